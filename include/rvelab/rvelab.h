@@ -47,7 +47,7 @@ extern "C" {
 /* ---- version ---- */
 
 #define RVELAB_ABI_MAJOR 1
-#define RVELAB_ABI_MINOR 2
+#define RVELAB_ABI_MINOR 3
 
 /* major << 16 | minor of the library at hand. Same major: a program built with an older header runs. */
 int32_t rvelab_abi_version(void);
@@ -326,6 +326,7 @@ int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info);
 #define RVELAB_OF_CELL 0 /* one row */
 #define RVELAB_OF_GRAINS 1
 #define RVELAB_OF_CONTACTS 2
+#define RVELAB_OF_INTERACTIONS 3 /* since 1.3: bonds, those that broke too; the name says of which kind, "bonds/radius_m" */
 
 #define RVELAB_DOUBLE 0
 #define RVELAB_INT64 1
@@ -336,7 +337,7 @@ typedef struct rvelab_array {
   const char* name;    /* as long as the library is loaded, as the next two */
   const char* unit;    /* "1" of a pure number */
   const char* meaning; /* in a few words */
-  int32_t of;          /* RVELAB_OF_CELL, RVELAB_OF_GRAINS or RVELAB_OF_CONTACTS */
+  int32_t of;          /* RVELAB_OF_CELL, RVELAB_OF_GRAINS, RVELAB_OF_CONTACTS or RVELAB_OF_INTERACTIONS */
   int32_t type;        /* of an entry, RVELAB_DOUBLE or RVELAB_INT64: 8 bytes */
   int64_t rows;        /* in this state */
   int64_t columns;     /* 1; a vector 3, a tensor 9, row-major */

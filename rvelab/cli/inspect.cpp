@@ -30,6 +30,12 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("dimension", dimension);
   listing.add("grains", network.grains.size());
   listing.add("contacts", network.contacts.size());
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    const Interactions all = rve.interactions();
+    const std::size_t count = static_cast<const ListOf<Law>&>(all).items.size();
+    if (count > 0) listing.add(Law::name, count);
+  });
   listing.add("stress_Pa", row_major(stress), "Pa");
   listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");
   listing.add("q_Pa", deviatoric_stress(stress, dimension), "Pa");

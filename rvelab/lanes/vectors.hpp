@@ -50,5 +50,36 @@ inline __attribute__((always_inline)) Triple<V> chosen(Mask held, const Triple<V
   return {held ? a.x : b.x, held ? a.y : b.y, held ? a.z : b.z};
 }
 
+/// Three columns of pair arrays.
+template <class V>
+inline __attribute__((always_inline)) Triple<V> load_triple(double* const* from, long at) {
+  return {load_as<V>(from[0] + at), load_as<V>(from[1] + at), load_as<V>(from[2] + at)};
+}
+template <class V>
+inline __attribute__((always_inline)) void store_triple(double* const* to, long at, const Triple<V>& value) {
+  store_as(to[0] + at, value.x);
+  store_as(to[1] + at, value.y);
+  store_as(to[2] + at, value.z);
+}
+
+/// A history vector in the tangent plane of the new normal, turned about n by the mean spin times dt (first order), and
+/// the factor that brings it back to its old length.
+template <class V>
+struct TurnedHistory {
+  Triple<V> vector;
+  V factor;
+};
+template <class V>
+inline __attribute__((always_inline)) TurnedHistory<V> turned_history(const Triple<V>& history, const Triple<V>& n,
+                                                                      V angle, bool twist) {
+  const V one = V{} + 1.0;
+  const V before = dot(history, history);
+  Triple<V> h = plus(history, -dot(history, n), n);
+  if (twist) h = plus(h, angle, cross(n, h));
+  const V after = dot(h, h);
+  const V factor = square_root(before / ((after > 0.0) ? after : one));
+  return {h, (after > 0.0) ? factor : V{}};
+}
+
 }  // namespace
 }  // namespace rvelab

@@ -81,6 +81,19 @@ LinearContact linearised(const ContactState& contact, double ri, double rj, Slip
   return linear;
 }
 
+LinearContact linearised(const InteractionState& interaction, double ri, double rj) {
+  LinearContact linear = linearised(static_cast<const ContactState&>(interaction), ri, rj, Slip::consistent);
+  const Vector3& n = interaction.normal;
+  ContactMatrix dm = ContactMatrix::Zero();
+  dm.leftCols<3>() = interaction.twisting_moment / interaction.length * (Matrix3::Identity() - n * n.transpose());
+  const Matrix3 twist = interaction.twisting_stiffness * n * n.transpose();
+  dm.middleCols<3>(3) += twist;
+  dm.rightCols<3>() -= twist;
+  linear.torque_i -= dm;
+  linear.torque_j += dm;
+  return linear;
+}
+
 bool rescales(const Network& network) {
   const bool carried = with_law(network.model.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
   return carried && network.model.unload_rescale;

@@ -50,6 +50,9 @@ struct LinearContact {
 /// The law without rescaling on unloading.
 LinearContact linearised(const ContactState& contact, double ri, double rj, Slip slip);
 
+/// Of an interaction other than a contact between round grains: its twisting moment follows the normal.
+LinearContact linearised(const InteractionState& interaction, double ri, double rj);
+
 /// True where the law of the network makes f_t and M fall with sqrt(overlap): it keeps that root from step to step.
 bool rescales(const Network& network);
 

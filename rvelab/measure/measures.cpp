@@ -32,8 +32,9 @@ double unbalanced(const Network& network, const OfGrain& of_grain) {
   double left = 0, force = 0;
   for (const GrainState& grain : network.grains) left += of_grain(grain);
   for (const ContactState& contact : network.contacts) force += contact.force().norm();
+  for (const ContactState& other : network.interactions) force += other.force().norm();
   if (!network.grains.empty()) left /= network.grains.size();
-  if (!network.contacts.empty()) force /= network.contacts.size();
+  force /= double(std::max({std::size_t(1), network.contacts.size(), network.interactions.size()}));
   const double scale = std::max(force, 1e-3 * network.reference_contact_force);
   return scale > 0 ? left / scale : 0.0;
 }
@@ -43,6 +44,14 @@ double unbalanced(const Network& network, const OfGrain& of_grain) {
 Matrix3 contact_stress(const Network& network) {
   Matrix3 sum = Matrix3::Zero();
   for (const ContactState& contact : network.contacts) sum -= contact.force() * contact.branch.transpose();
+  for (const ContactState& other : network.interactions) sum -= other.force() * other.branch.transpose();
+  return in_laboratory(network, sum / network.cell.volume());
+}
+
+Matrix3 interaction_stress(const Network& network, int kind) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const InteractionState& other : network.interactions)
+    if (other.kind == kind) sum -= other.force() * other.branch.transpose();
   return in_laboratory(network, sum / network.cell.volume());
 }
 
@@ -97,12 +106,19 @@ std::vector<int> contact_counts(const Network& network) {
 std::vector<bool> rattlers(const Network& network) {
   std::vector<int> count = contact_counts(network);
   std::vector<bool> removed(network.grains.size(), false);
+  // What holds rotations holds its grains by itself.
+  const auto count_interactions = [&] {
+    for (const InteractionState& other : network.interactions)
+      for (const std::int32_t g : {other.i, other.j}) count[std::size_t(g)] += other.rolling_stiffness > 0 ? 2 : 1;
+  };
+  count_interactions();
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t g = 0; g < count.size(); ++g) {
       if (!removed[g] && count[g] < 2) changed = removed[g] = true;
     }
     std::fill(count.begin(), count.end(), 0);
+    count_interactions();
     for (const ContactState& contact : network.contacts) {
       if (removed[contact.i] || removed[contact.j]) continue;
       ++count[contact.i];
@@ -123,6 +139,12 @@ double mechanical_coordination_number(const Network& network) {
       std::count_if(network.contacts.begin(), network.contacts.end(),
                     [&](const ContactState& contact) { return !removed[contact.i] && !removed[contact.j]; });
   return grains > 0 ? 2.0 * contacts / grains : not_defined;
+}
+
+double pore_volume(const Network& network) {
+  double solid = 0;
+  for (const GrainState& grain : network.grains) solid += solid_volume(network, grain);
+  return network.cell.volume() - solid;
 }
 
 double void_ratio(const Network& network) {
@@ -153,6 +175,7 @@ double unbalanced_torque_ratio(const Network& network) {
 double elastic_energy(const Network& network) {
   double sum = 0;
   for (const ContactState& contact : network.contacts) sum += contact.elastic_energy;
+  for (const ContactState& other : network.interactions) sum += other.elastic_energy;
   return sum;
 }
 

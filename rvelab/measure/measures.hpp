@@ -13,10 +13,13 @@
 
 namespace rvelab {
 
-/// Stress of the contact forces, Pa: -(1/V) sum F (x) b, sigma_kl with force component k, branch component l; F is the
-/// force on j, b the branch from i to j (Love-Weber). Not symmetrised: the antisymmetric part measures unbalanced
-/// torque.
+/// Stress of the forces of contacts and interactions, Pa: -(1/V) sum F (x) b, sigma_kl with force component k, branch
+/// component l; F is the force on j, b the branch from i to j (Love-Weber). Not symmetrised: the antisymmetric part
+/// measures unbalanced torque.
 Matrix3 contact_stress(const Network& network);
+
+/// Part of it that interactions of one kind bear (of InteractionLaws; bonds 0).
+Matrix3 interaction_stress(const Network& network, int kind);
 
 /// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.
 Matrix3 reynolds_stress(const Network& network);
@@ -71,6 +74,8 @@ double unbalanced_torque_ratio(const Network& network);
 
 /// Energy stored in contacts, J: normal, tangential and rolling springs.
 double elastic_energy(const Network& network);
+/// Volume of the cell less that of the grains, m^3; overlaps not subtracted.
+double pore_volume(const Network& network);
 
 /// sum m v'^2/2 + I w^2/2, J, with w the whole spin, as the energy balance counts it (with w' alone the balance of a
 /// shear at 300 to 1000 per s would miss 0.5 to 9 % of the work). Zero for a quasi-static network.

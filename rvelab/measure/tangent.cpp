@@ -60,6 +60,12 @@ Spring spring_of(const Network& network, const ContactState& contact) {
   return spring;
 }
 
+Spring spring_of(const Network& network, const InteractionState& other) {
+  const LinearContact linear =
+      linearised(other, network.grains[std::size_t(other.i)].radius, network.grains[std::size_t(other.j)].radius);
+  return {&other, rows_of(linear), Vector9::Zero()};
+}
+
 /// A strain as the cell sees it: I + H = (I + turn)(I + stretch) to first order, stretch upper triangular. The frame
 /// turns by `turn`; in it the grains turn on average with the spin of the stretch. Contact histories are carried in
 /// this frame, which shows in the one slip convention that is not objective (full_radius).
@@ -113,6 +119,9 @@ class Condensed {
     for (const ContactState& contact : network.contacts) {
       if (number_[contact.i] >= 0 && number_[contact.j] >= 0) springs_.push_back(spring_of(network, contact));
     }
+    for (const InteractionState& other : network.interactions)
+      if (number_[std::size_t(other.i)] >= 0 && number_[std::size_t(other.j)] >= 0)
+        springs_.push_back(spring_of(network, other));
     factorise();
   }
 
@@ -277,6 +286,10 @@ Eigen::MatrixXd affine_tangent(const Network& network) {
     for (const ContactState& contact : network.contacts) {
       const Vector9 q = strain.mean_motion(contact);
       change.add(contact, spring_of(network, contact).law.topRows<3>() * q, q.head<3>());
+    }
+    for (const InteractionState& other : network.interactions) {
+      const Vector9 q = strain.mean_motion(other);
+      change.add(other, spring_of(network, other).law.topRows<3>() * q, q.head<3>());
     }
     tangent.col(k) = stress_components(change.value(network, strain), dimension);
   }

@@ -51,14 +51,22 @@ struct Read : records::MeasuredState {
     return *grains_;
   }
 
+  template <class Law>
+  const std::vector<Interaction<Law>>& interactions() const {
+    if (!interactions_) interactions_ = rve.interactions();
+    return static_cast<const ListOf<Law>&>(*interactions_).items;
+  }
+
  private:
   mutable std::optional<Grains> grains_;
+  mutable std::optional<Interactions> interactions_;
 };
 
 struct Array {
   ArrayText text;
   std::function<void(const Read&, Entries&)> write;
   std::function<bool(Shape)> has = [](Shape) { return true; };
+  std::function<std::size_t(const Rve&)> rows = nullptr;  ///< of interactions
 };
 
 template <class Value>
@@ -182,12 +190,45 @@ void add_contacts(std::vector<Array>& to) {
                            [](const Read&, const C& contact) { return contact.elastic_energy; }));
 }
 
+/// Of a kind of interaction: its pair, its branch and what its law keeps.
+template <class Law>
+void add_interactions(std::vector<Array>& to) {
+  static std::deque<std::string> names;  // as long as the library is loaded
+  using Item = Interaction<Law>;
+  const auto add = [&](const std::string& field, const char* unit, const char* meaning, auto entry) {
+    to.push_back(column(
+        names.emplace_back(std::string(Law::name) + "/" + field).c_str(), unit, meaning, RVELAB_OF_INTERACTIONS,
+        [](const Read& state) { return state.template interactions<Law>().size(); },
+        [=](const Read& state, std::size_t k) { return entry(state, state.template interactions<Law>()[k]); }));
+    to.back().rows = [](const Rve& rve) {
+      const Interactions all = rve.interactions();
+      return static_cast<const ListOf<Law>&>(all).items.size();
+    };
+  };
+  add("i", "1", "row of the first grain", [](const Read&, const Item& item) { return std::int64_t(item.i); });
+  add("j", "1", "row of the second grain", [](const Read&, const Item& item) { return std::int64_t(item.j); });
+  add("image", "1", "lattice columns by which j is shifted", [](const Read&, const Item& item) { return item.image; });
+  [&]<int... n>(std::integer_sequence<int, n...>) {
+    (add(Law::fields[n].name, Law::fields[n].unit, "",
+         [](const Read& state, const Item& item) {
+           const auto& value = static_cast<const FieldOf<Law, n>&>(item).value;
+           if constexpr (FieldOf<Law, n>::scalar)
+             return value;
+           else
+             return in_laboratory(Law::fields[n], value, state.network.cell);
+         }),
+     ...);
+  }
+  (std::make_integer_sequence<int, int(std::size(Law::fields))>());
+}
+
 const std::vector<Array>& arrays() {
   static const std::vector<Array> all = [] {
     std::vector<Array> made;
     add_measures(made);
     add_grains(made);
     add_contacts(made);
+    each_interaction_law([&](auto, auto law) { add_interactions<decltype(law)>(made); });
     return made;
   }();
   return all;
@@ -208,7 +249,8 @@ std::vector<std::int64_t> array_rows(const Rve& rve) {
   const Network network = rve.network();
   std::vector<std::int64_t> rows;
   for (const Array& array : arrays()) {
-    const std::size_t count = array.text.of == RVELAB_OF_CELL     ? 1
+    const std::size_t count = array.rows                          ? array.rows(rve)
+                              : array.text.of == RVELAB_OF_CELL   ? 1
                               : array.text.of == RVELAB_OF_GRAINS ? network.grains.size()
                                                                   : network.contacts.size();
     rows.push_back(array.has(network.shape) ? std::int64_t(count) : -1);

@@ -85,7 +85,7 @@ struct FabricAnisotropy {
 
 struct ContactStress {
   Matrix3 contact_stress = Matrix3::Zero();
-  static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the contact forces alone"};
+  static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the forces of contacts and bonds"};
   static constexpr auto member = &ContactStress::contact_stress;
   static Matrix3 measure(const MeasuredState& state) { return state.rve.contact_stress(); }
 };
@@ -101,7 +101,7 @@ struct ReynoldsStress {
 
 struct ElasticEnergy {
   double elastic_energy = 0;
-  static constexpr QuantityText text{"elastic_energy_J", "J", "in contact springs"};
+  static constexpr QuantityText text{"elastic_energy_J", "J", "in the springs of contacts and bonds"};
   static constexpr auto member = &ElasticEnergy::elastic_energy;
   static double measure(const MeasuredState& state) { return rvelab::elastic_energy(state.network); }
 };
@@ -185,6 +185,86 @@ struct StrongDeviator {
   static double measure(const MeasuredState& state) { return state.networks().strong.deviator_share; }
 };
 
+// Bonds (rvelab/interaction/parallel_bond.hpp).
+
+/// Sum of what `of` makes of the columns of each bond.
+template <class Of>
+double sum_over_bonds(const MeasuredState& state, const Of& of) {
+  double sum = 0, columns[interaction_columns<ParallelBond>()];
+  const Interactions all = state.rve.interactions();
+  for (const auto& bond : static_cast<const ListOf<ParallelBond>&>(all).items) {
+    put_columns<ParallelBond>(bond, columns);
+    sum += of(columns);
+  }
+  return sum;
+}
+
+struct Bonds {
+  double bonds = 0;
+  static constexpr QuantityText text{"bonds", "1", "intact ones"};
+  static constexpr auto member = &Bonds::bonds;
+  static double measure(const MeasuredState& state) {
+    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 0 ? 1.0 : 0.0; });
+  }
+};
+
+struct BondsBrokenInTension {
+  double bonds_broken_in_tension = 0;
+  static constexpr QuantityText text{"bonds_broken_in_tension", "1", "since they were made"};
+  static constexpr auto member = &BondsBrokenInTension::bonds_broken_in_tension;
+  static double measure(const MeasuredState& state) {
+    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 1 ? 1.0 : 0.0; });
+  }
+};
+
+struct BondsBrokenInShear {
+  double bonds_broken_in_shear = 0;
+  static constexpr QuantityText text{"bonds_broken_in_shear", "1", "since they were made"};
+  static constexpr auto member = &BondsBrokenInShear::bonds_broken_in_shear;
+  static double measure(const MeasuredState& state) {
+    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 2 ? 1.0 : 0.0; });
+  }
+};
+
+struct BondStress {
+  Matrix3 bond_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"bond_stress_Pa", "Pa", "part of contact_stress_Pa that bonds bear"};
+  static constexpr auto member = &BondStress::bond_stress;
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bonds_kind); }
+};
+
+struct BondReleasedEnergy {
+  double bond_released_energy = 0;
+  static constexpr QuantityText text{"bond_released_energy_J", "J", "elastic energy that bonds gave up as they broke"};
+  static constexpr auto member = &BondReleasedEnergy::bond_released_energy;
+  static double measure(const MeasuredState& state) {
+    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::released]; });
+  }
+};
+
+// Water (rvelab/interaction/bridge.hpp).
+
+struct Bridges {
+  double bridges = 0;
+  static constexpr QuantityText text{"bridges", "1", "of water between two grains"};
+  static constexpr auto member = &Bridges::bridges;
+  static double measure(const MeasuredState& state) { return double(state.bridges()); }
+};
+
+struct Saturation {
+  double saturation = 0;
+  static constexpr QuantityText text{"saturation", "1", "volume of the bridges over that of the pores"};
+  static constexpr auto member = &Saturation::saturation;
+  static double measure(const MeasuredState& state) { return state.water_volume() / pore_volume(state.network); }
+};
+
+struct BridgeStress {
+  Matrix3 bridge_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"bridge_stress_Pa", "Pa", "part of contact_stress_Pa that bridges bear"};
+  static constexpr auto member = &BridgeStress::bridge_stress;
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bridges_kind); }
+};
+
 /// New ones come last: journals name what was asked for by the places here.
 using Quantities = QuantityTable<  //
     VoidRatio,                     //
@@ -208,7 +288,15 @@ using Quantities = QuantityTable<  //
     StressForceFabricRatio,        //
     FabricAngle,                   //
     StrongContacts,                //
-    StrongDeviator                 //
+    StrongDeviator,                //
+    Bonds,                         //
+    BondsBrokenInTension,          //
+    BondsBrokenInShear,            //
+    BondStress,                    //
+    BondReleasedEnergy,            //
+    Bridges,                       //
+    Saturation,                    //
+    BridgeStress                   //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

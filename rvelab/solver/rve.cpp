@@ -6,7 +6,9 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/interaction/bridge_of_pair.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/at_rate/at_rate.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/quasi_static/deferred.hpp"
@@ -242,6 +244,48 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   apply_deferred_strain(state).set_materials(materials);
 }
 
+Interactions Rve::interactions() const {
+  // A large cell keeps its grains in an order of its own.
+  const Assembly& assembly = state_->assembly();
+  return assembly.state.memory_order.empty() ? interactions_of(assembly.pairs) : Interactions(specimen());
+}
+
+void Rve::set_interactions(const Interactions& interactions) {
+  apply_deferred_strain(prepared_for_change(*state_));
+  Specimen changed = specimen();
+  static_cast<Interactions&>(changed) = interactions;
+  changed.state.masses = {};  // they go with the stiffness
+  open_instead(changed);
+}
+
+void Rve::set_water(const Water& water) {
+  apply_deferred_strain(prepared_for_change(*state_));
+  Specimen changed = specimen();
+  const bool plane = changed.cell.dimension == 2;
+  changed.water = {water};
+  // Bridges that are there stay, as those of the new water.
+  double columns[interaction_columns<CapillaryBridge>()];
+  for (auto& bridge : static_cast<ListOf<CapillaryBridge>&>(changed).items) {
+    make_bridge(water, changed.grains.radius[std::size_t(bridge.i)], changed.grains.radius[std::size_t(bridge.j)],
+                plane ? changed.cell.lattice(2, 2) : 0, columns);
+    columns[CapillaryBridge::present] = 1;
+    take_columns<CapillaryBridge>(columns, bridge);
+  }
+  changed.state.masses = {};
+  open_instead(changed);
+}
+
+void Rve::remove_water() {
+  apply_deferred_strain(prepared_for_change(*state_));
+  Specimen changed = specimen();
+  changed.water.clear();
+  static_cast<ListOf<CapillaryBridge>&>(changed).items.clear();
+  changed.state.masses = {};
+  open_instead(changed);
+}
+
+const Water* Rve::water() const { return state_->model().water.empty() ? nullptr : &state_->model().water.front(); }
+
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
   State& state = prepared_for_change(*state_);
   if (velocity.size() != size() || spin.size() != size())
@@ -261,13 +305,15 @@ void Rve::take_as_reference() { apply_deferred_strain(*state_).take_as_reference
 
 Specimen Rve::specimen() const { return close_assembly(state_->model(), state_->assembly()); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
-void Rve::restore(std::span<const std::byte> snapshot) {
-  Rve restored(from_bytes(snapshot));
+void Rve::restore(std::span<const std::byte> snapshot) { open_instead(from_bytes(snapshot)); }
+
+void Rve::open_instead(const Specimen& specimen) {
+  Rve opened(specimen);
   const Model& model = state_->model();
-  restored.watch(model.stop);
-  restored.measure_time(model.times);
-  restored.share(model.team);
-  *this = std::move(restored);
+  opened.watch(model.stop);
+  opened.measure_time(model.times);
+  opened.share(model.team);
+  *this = std::move(opened);
 }
 
 }  // namespace rvelab

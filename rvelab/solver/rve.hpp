@@ -119,6 +119,15 @@ class Rve {
   /// for each that the specimen has, in its order. InputError if their number differs or one is not allowed by the law
   /// (check_parameters in contact/model.hpp); the RVE is then as it was.
   void set_materials(const std::vector<Material>& materials);
+  /// The interactions other than contacts (bonds), ordered by their pairs; cell frame. set_interactions replaces them.
+  /// InputError, and the RVE is as it was, if a grain is none of it, a pair stands twice or a number is not allowed.
+  Interactions interactions() const;
+  void set_interactions(const Interactions& interactions);
+  /// Water between the grains: pairs that touch, now or later, get a bridge; those that are there become bridges of this
+  /// water. remove_water: all go. InputError as set_interactions. water() is null without any.
+  void set_water(const Water& water);
+  void remove_water();
+  const Water* water() const;
   /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), at a rate: one of each for every grain, in the
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
   /// not size() or an entry is not finite; the RVE is then as it was.
@@ -137,6 +146,9 @@ class Rve {
   void restore(std::span<const std::byte> snapshot);
 
  private:
+  /// What watch, share and measure_time set stays.
+  void open_instead(const Specimen& specimen);
+
   std::unique_ptr<State> state_;
 };
 

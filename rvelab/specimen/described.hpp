@@ -71,6 +71,10 @@ struct Table {
 template <class Owner, class Item>
 Table(const char*, std::vector<Item> Owner::*) -> Table<Owner, Item>;
 
+/// Whether a file leaves out a table of these that is empty.
+template <class Item>
+inline constexpr bool left_out_where_empty = false;
+
 /// The description of a struct, a tuple of Field, Part and Table in the order of the file.
 template <class Struct>
 inline constexpr std::tuple<> members_of{};

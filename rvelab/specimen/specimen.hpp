@@ -9,6 +9,8 @@
 #include "rvelab/contact/model.hpp"
 #include "rvelab/grains/own_columns.hpp"
 #include "rvelab/grains/shape.hpp"
+#include "rvelab/interaction/interaction.hpp"
+#include "rvelab/interaction/water.hpp"
 #include "rvelab/solver/assembly/list_state.hpp"
 #include "rvelab/solver/loading/loading_state.hpp"
 #include "rvelab/solver/quasi_static/control_state.hpp"
@@ -73,7 +75,8 @@ struct SolverState {
   EnergyTerms energy_balance;
 };
 
-struct Specimen {
+/// Interactions other than contacts (bonds) stand before its members.
+struct Specimen : Interactions {
   Shape shape = round_shape(3);
   Cell cell;
   std::vector<Material> materials;
@@ -82,6 +85,7 @@ struct Specimen {
   SolverOptions solver;
   Grains grains;
   std::vector<Contact> contacts;
+  std::vector<Water> water;  ///< none or one: then pairs that touch get bridges
   SolverState state;
 };
 

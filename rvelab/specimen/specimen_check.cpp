@@ -154,6 +154,7 @@ class Relations {
     check_masses();
     check_deferred();
     check_contacts();
+    check_interactions();
     const long collision_steps = s.solver.collision_steps;
     if (collision_steps > 0 && collision_steps < 5)
       refuse("solver/collision_steps = " + std::to_string(collision_steps) +
@@ -165,7 +166,7 @@ class Relations {
   /// The same of what has a remedy of its own.
   [[noreturn]] void advise(const std::string& what) const { throw InputError(where_ + what); }
 
-  static std::string at(const char* field, std::size_t k) { return field + ("[" + std::to_string(k) + "]"); }
+  static std::string at(const std::string& field, std::size_t k) { return field + ("[" + std::to_string(k) + "]"); }
   std::string of_grain(const char* field, std::size_t k) const {
     return at(field, k) + " of grain " + std::to_string(s.grains.id[k]);
   }
@@ -325,29 +326,57 @@ class Relations {
   }
 
   /// A pair in words: "contacts[3], grains 4 and 7 (i = 3, j = 6, image 0, 1, 0)".
-  std::string pair(std::size_t k) const {
-    const Contact& c = s.contacts[k];
+  template <class Item>
+  std::string pair(const std::string& group, const Item& c, std::size_t k) const {
     const auto id = [&](std::int32_t g) { return std::to_string(s.grains.id[std::size_t(g)]); };
-    return at("contacts", k) + ", grains " + id(c.i) + " and " + id(c.j) + " (i = " + std::to_string(c.i) +
+    return at(group, k) + ", grains " + id(c.i) + " and " + id(c.j) + " (i = " + std::to_string(c.i) +
            ", j = " + std::to_string(c.j) + ", image " + std::to_string(c.image[0]) + ", " +
            std::to_string(c.image[1]) + ", " + std::to_string(c.image[2]) + ")";
   }
+  std::string pair(std::size_t k) const { return pair("contacts", s.contacts[k], k); }
 
-  void check_contacts() const {
-    const auto key = [](const Contact& c) { return std::tuple(c.i, c.j, c.image); };
+  /// Pairs of grains that there are, each once and in order. `each`: what one is called.
+  template <class Item>
+  void check_pairs(const std::string& group, const std::string& each, const std::vector<Item>& items) const {
     const std::size_t n = s.grains.size();
-    for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-      const Contact& c = s.contacts[k];
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      const Item& c = items[k];
       if (c.j < c.i || std::size_t(c.j) >= n)
-        refuse(at("contacts/i", k) + " = " + std::to_string(c.i) + ", " + at("contacts/j", k) + " = " +
+        refuse(at(group + "/i", k) + " = " + std::to_string(c.i) + ", " + at(group + "/j", k) + " = " +
                std::to_string(c.j) + "; allowed: 0 <= i <= j < " + std::to_string(n));
       if (c.i == c.j && c.image == Image{})
-        refuse(pair(k) + " is a grain that touches itself; allowed: an image of it, in contacts/image");
-      if (k > 0 && key(c) == key(s.contacts[k - 1])) refuse(pair(k) + " stands twice; allowed: each contact once");
-      if (k > 0 && key(c) < key(s.contacts[k - 1]))
-        refuse(pair(k) + " is out of order; allowed: contacts sorted by i, then j, then image");
-      check_history(k);
+        refuse(pair(group, c, k) + " is a grain that touches itself; allowed: an image of it, in " + group + "/image");
+      if (k > 0 && pair_of(c) == pair_of(items[k - 1]))
+        refuse(pair(group, c, k) + " stands twice; allowed: each " + each + " once");
+      if (k > 0 && pair_of(c) < pair_of(items[k - 1]))
+        refuse(pair(group, c, k) + " is out of order; allowed: " + group + " sorted by i, then j, then image");
     }
+  }
+
+  void check_contacts() const {
+    check_pairs("contacts", "contact", s.contacts);
+    for (std::size_t k = 0; k < s.contacts.size(); ++k) check_history(k);
+  }
+
+  void check_interactions() const {
+    if (s.water.size() > 1)
+      refuse("water has " + std::to_string(s.water.size()) + " rows; allowed: none, or one for all grains");
+    for (const Water& water : s.water)
+      if ((water.suction > 0) == (water.volume_ratio > 0))
+        refuse("water/suction_Pa = " + in_words(water.suction) +
+               ", water/volume_ratio = " + in_words(water.volume_ratio) + "; allowed: one of them above 0");
+    if (!s.water.empty() && s.cell.dimension == 2 && s.water.front().volume_ratio > 0)
+      refuse("water/volume_ratio = " + in_words(s.water.front().volume_ratio) +
+             " between discs; allowed: suction_Pa, which gives their bridges in closed form");
+    if (!s.water.empty() && !is_round(s.shape))
+      refuse("water between grains that are not round; allowed: between discs or spheres");
+    each_interaction_law([&](auto, auto law) {
+      using Law = decltype(law);
+      const auto& items = static_cast<const ListOf<Law>&>(s).items;
+      if (!items.empty() && !is_round(s.shape))
+        refuse(std::string(Law::name) + " of grains that are not round; allowed: between discs or spheres");
+      check_pairs(Law::name, "pair", items);
+    });
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong

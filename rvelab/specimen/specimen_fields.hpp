@@ -156,17 +156,58 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Part{"energy_balance", &SolverState::energy_balance},
 };
 
+/// A field of an interaction, as its law declares it.
+template <class Law, int n>
+constexpr auto field_of_interaction() {
+  using Item = Interaction<Law>;
+  using Value = decltype(FieldOf<Law, n>::value);
+  constexpr const InteractionField& declared = Law::fields[n];
+  const Field<Item, Value> field =
+      Field<Item, Value>{declared.name, &FieldOf<Law, n>::value, declared.unit}.within(declared.allowed);
+  return declared.turning == Turning::scalar
+             ? field
+             : field.lying(declared.turning == Turning::tangent ? InPlane::tangent : InPlane::normal);
+}
+template <class Law, int... n>
+inline constexpr auto members_of<Interaction<Law, std::integer_sequence<int, n...>>> =
+    std::tuple{Field<Interaction<Law>, std::int32_t>{"i", &Interaction<Law>::i, "1"}.within(number_from_zero),
+               Field<Interaction<Law>, std::int32_t>{"j", &Interaction<Law>::j, "1"}.within(number_from_zero),
+               Field<Interaction<Law>, Image>{"image", &Interaction<Law>::image, "1"}.lying(InPlane::along),
+               field_of_interaction<Law, n>()...};
+
+template <class Law>
+inline constexpr bool left_out_where_empty<Interaction<Law>> = true;
+
 template <>
-inline constexpr auto members_of<Specimen> = std::tuple{
-    Field{"shape", &Specimen::shape, "-"},     //
-    Part{"cell", &Specimen::cell},             //
-    Part{"grains", &Specimen::grains},         //
-    Table{"contacts", &Specimen::contacts},    //
-    Table{"materials", &Specimen::materials},  //
-    Part{"contact", &Specimen::contact},       //
-    Part{"damping", &Specimen::damping},       //
-    Part{"solver", &Specimen::solver},         //
-    Part{"state", &Specimen::state},
+inline constexpr auto members_of<Water> = std::tuple{
+    Field{"surface_tension_N_m", &Water::surface_tension, "N/m"}.within(positive_number),
+    Field{"contact_angle_deg", &Water::contact_angle_deg, "degrees"}.within({0, 45}),
+    Field{"suction_Pa", &Water::suction, "Pa"}.within(number_from_zero),
+    Field{"volume_ratio", &Water::volume_ratio, "1"}.within({0, 0.1}),
 };
+template <>
+inline constexpr bool left_out_where_empty<Water> = true;
+
+template <class... Laws>
+constexpr auto interaction_tables(TypeList<Laws...>) {
+  return std::tuple{Table<Specimen, Interaction<Laws>>{Laws::name, &ListOf<Laws>::items}...};
+}
+
+template <>
+inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"shape", &Specimen::shape, "-"},  //
+                                                                       Part{"cell", &Specimen::cell},          //
+                                                                       Part{"grains", &Specimen::grains},      //
+                                                                       Table{"contacts", &Specimen::contacts}},
+                                                            interaction_tables(InteractionLaws{}),
+                                                            std::tuple{Table{"water", &Specimen::water},          //
+                                                                       Table{"materials", &Specimen::materials},  //
+                                                                       Part{"contact", &Specimen::contact},       //
+                                                                       Part{"damping", &Specimen::damping},       //
+                                                                       Part{"solver", &Specimen::solver},         //
+                                                                       Part{"state", &Specimen::state}});
+
+/// The lists of interactions are a base of Specimen, one initialiser for all of them.
+template <>
+inline constexpr std::size_t inherited_members<Specimen> = std::size_t(interaction_kinds) - 1;
 
 }  // namespace rvelab::fields

@@ -157,9 +157,10 @@ TEST_CASE("the list of arrays tells type, extent, unit and owner of each, and on
     for (const auto& array : arrays_of(host, id)) {
       by_name[array.name] = array;
       CAPTURE(array.name);
-      const std::int64_t rows = array.of == RVELAB_OF_CELL     ? 1
-                                : array.of == RVELAB_OF_GRAINS ? info.grains
-                                                               : info.contacts;
+      const std::int64_t rows = array.of == RVELAB_OF_CELL       ? 1
+                                : array.of == RVELAB_OF_GRAINS   ? info.grains
+                                : array.of == RVELAB_OF_CONTACTS ? info.contacts
+                                                                 : 0;  // without bonds and water
       CHECK(array.rows == rows);
       CHECK((array.columns == 1 || array.columns == 3 || array.columns == 9));
       CHECK(std::string(array.unit).size() > 0);

@@ -290,6 +290,9 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
+  specimen.water.resize(1);
+  each_interaction_law(
+      [&](auto, auto law) { static_cast<ListOf<decltype(law)>&>(specimen).items.resize(contact_count); });
   Pairs<RandomFill>{RandomFill(seed)}(specimen, specimen);
   return specimen;
 }
@@ -345,6 +348,16 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
     for (Vector3* history : {&c.tangential_force, &c.rolling_moment})
       *history = branch.cross(Vector3(random.within({-1, 1}), random.within({-1, 1}), random.within({-1, 1})));
   }
+  each_interaction_law([&](auto, auto law) {
+    auto& items = static_cast<ListOf<decltype(law)>&>(s).items;
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      items[k].i = s.contacts[k].i;
+      items[k].j = s.contacts[k].j;
+      items[k].image = s.contacts[k].image;
+    }
+  });
+  s.water.front().suction = random.within({1, 1e5});
+  s.water.front().volume_ratio = 0;
   return s;
 }
 

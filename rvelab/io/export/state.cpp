@@ -37,6 +37,10 @@ std::vector<Matrix3> grain_stresses(const Network& network) {
     stresses[i] -= c.force() * c.arm_i.transpose();  // the force on i is -F
     stresses[j] += c.force() * c.arm_j.transpose();
   }
+  for (const InteractionState& c : network.interactions) {
+    stresses[std::size_t(c.i)] -= c.force() * c.arm_i.transpose();
+    stresses[std::size_t(c.j)] += c.force() * c.arm_j.transpose();
+  }
   const double thickness = network.cell.lattice(2, 2);
   const Matrix3& turn = network.cell.rotation;
   for (std::size_t g = 0; g < stresses.size(); ++g) {

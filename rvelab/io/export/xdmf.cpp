@@ -30,6 +30,7 @@ class Series {
             "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"" + exact(time) + "\"/>\n";
     add_grains(state);
     if (!state.network.contacts.empty()) add_contacts(state);
+    each_interaction_law([&](auto, auto law) { add_interactions<decltype(law)>(state); });
     add_cell(state);
     text += "   </Grid>\n";
   }
@@ -142,6 +143,41 @@ class Series {
     attribute("contacts", "normal_force_N", "Cell", normal_force, 1, "N");
     attribute("contacts", "overlap_m", "Cell", overlap, 1, "m");
     attribute("contacts", "sliding", "Cell", sliding, 1, "1");
+    end();
+  }
+
+  /// All of a kind, broken bonds too, as lines between the centres with what the law keeps.
+  template <class Law>
+  void add_interactions(const ExportState& state) {
+    const auto& items = static_cast<const ListOf<Law>&>(state.specimen).items;
+    if (items.empty()) return;
+    const Cell& cell = state.network.cell;
+    const Box box(cell.lattice);
+    const auto& at = state.specimen.grains.position;
+    std::vector<double> points;
+    for (const Interaction<Law>& item : items) {
+      const auto i = std::size_t(item.i), j = std::size_t(item.j);
+      const Vector3 from = box.wrapped(at[i]);
+      append(points, cell.rotation * from);
+      append(points, cell.rotation * (from + (at[j] + translation(cell, item.image) - at[i])));
+    }
+    begin(Law::name, lines(Law::name, items.size()), points);
+    std::size_t field = 0;
+    each_field<Law>(items.front(), [&](const InteractionField& described, const auto&) {
+      std::vector<double> values;
+      for (const Interaction<Law>& item : items) {
+        std::size_t k = 0;
+        each_field<Law>(item, [&](const InteractionField&, const auto& value) {
+          if (k++ != field) return;
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+            values.push_back(value);
+          else
+            append(values, in_laboratory(described, value, cell));
+        });
+      }
+      attribute(Law::name, described.name, "Cell", values, values.size() / items.size(), described.unit);
+      ++field;
+    });
     end();
   }
 

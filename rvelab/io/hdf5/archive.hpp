@@ -58,6 +58,7 @@ class Writer {
   }
   template <class Item, class... Columns>
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
+    if (fields::left_out_where_empty<Item> && items.empty()) return;
     (column(group, items, columns), ...);
   }
   /// Which columns count, bit by bit in a member of each item: the columns that are there say it.
@@ -116,6 +117,8 @@ class Reader {
   }
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
+    items.clear();
+    if (fields::left_out_where_empty<Item> && !file_.has(group_ + "/" + group + "/" + first.name)) return;
     items.assign(rows_of(group, first), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
@@ -199,6 +202,7 @@ class Digest {
   }
   template <class Item, class... Columns>
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
+    if (fields::left_out_where_empty<Item> && items.empty()) return;
     add(std::uint64_t(items.size()));
     for (const Item& item : items) (add(item.*columns.member), ...);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 
 namespace rvelab {
@@ -20,15 +21,22 @@ struct Coefficients {
   double normal, tangential;
 };
 
+/// Interactions other than contacts, as the contacts that they are beside: add(branch, kn, kt).
+template <class Add>
+void each_interaction(const Model& model, const Assembly& assembly, const Add& add) {
+  if (!has_interactions(assembly)) return;
+  for (const ActingInteraction& a : acting_interactions(model, assembly))
+    add(Branch{a.branch[0], a.branch[1], a.branch[2]}, a.stiffness.normal, a.stiffness.tangential);
+}
+
+/// `interactions`: whether those other than contacts count, by their stiffness.
 template <Shape shape, class Of>
-Moments moments_of(const Model& model, const Assembly& assembly, const Of& coefficients) {
+Moments moments_of(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   constexpr int D = dimension_of(shape), pairs = D == 2 ? 3 : 6;
   constexpr int place[6] = {0, 1, D == 2 ? 5 : 2, 3, 4, 5};  // of the products of two components of n
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   double four[D][pairs] = {}, two[pairs] = {};
-  each_touching<shape>(model, assembly, [&](std::size_t p, const PairPlace& at) {
-    const Branch& b = at.branch;
-    const auto [kn, kt] = coefficients(p, at);
+  const auto add = [&](const Branch& b, double kn, double kt) {
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
     const double all[6] = {b.x * b.x, b.y * b.y, b.z * b.z, b.y * b.z, b.x * b.z, b.x * b.y};
     double products[pairs];
@@ -36,7 +44,12 @@ Moments moments_of(const Model& model, const Assembly& assembly, const Of& coeff
     for (int k = 0; k < pairs; ++k) two[k] += kt * products[k];
     for (int i = 0; i < D; ++i)
       for (int k = i; k < pairs; ++k) four[i][k] += part * (products[i] * products[k]);
+  };
+  each_touching<shape>(model, assembly, [&](std::size_t p, const PairPlace& at) {
+    const auto [kn, kt] = coefficients(p, at);
+    add(at.branch, kn, kt);
   });
+  if (interactions) each_interaction(model, assembly, add);
   Moments m;
   Vector6 second = Vector6::Zero();
   for (int k = 0; k < pairs; ++k) second[place[k]] = two[k];
@@ -80,10 +93,10 @@ Matrix6 sum_over_outlines(const Model& model, const Assembly& assembly, const Of
 }
 
 template <Shape shape, class Of>
-Matrix6 sum_over_round(const Model& model, const Assembly& assembly, const Of& coefficients) {
+Matrix6 sum_over_round(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   // C_ijkl = sum l^2 [(kn - kt) n_i n_j n_k n_l
   //                   + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
-  const Moments m = moments_of<shape>(model, assembly, coefficients);
+  const Moments m = moments_of<shape>(model, assembly, coefficients, interactions);
   constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   Matrix6 stiffness = m.fourth;
   for (int r = 0; r < 6; ++r)
@@ -96,10 +109,10 @@ Matrix6 sum_over_round(const Model& model, const Assembly& assembly, const Of& c
 }
 
 template <class Of>
-Matrix6 affine_sum(const Model& model, const Assembly& assembly, const Of& coefficients) {
+Matrix6 affine_sum(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   const Matrix6 stiffness = with_shape(model.shape, [&](auto shape) -> Matrix6 {
     if constexpr (is_round(shape.value))
-      return sum_over_round<shape.value>(model, assembly, coefficients);
+      return sum_over_round<shape.value>(model, assembly, coefficients, interactions);
     else
       return sum_over_outlines<shape.value>(model, assembly, coefficients);
   });
@@ -123,21 +136,28 @@ Vector6 strain_components(const Matrix3& m) {
 
 Matrix6 affine_stiffness(const Model& model, const Assembly& assembly) {
   return with_force(model, [&](auto force) {
-    return affine_sum(model, assembly, [&](std::size_t p, const auto& at) -> Coefficients {
-      const ContactStiffness k = stiffness_of<decltype(force)>(
-          model, parameters_of(model, assembly.pairs, p), at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
-      return {k.normal, k.tangential};
-    });
+    return affine_sum(
+        model, assembly,
+        [&](std::size_t p, const auto& at) -> Coefficients {
+          const ContactStiffness k =
+              stiffness_of<decltype(force)>(model, parameters_of(model, assembly.pairs, p), at.overlap,
+                                            hertz_radius_ratio(model, assembly.pairs, p, at));
+          return {k.normal, k.tangential};
+        },
+        true);
   });
 }
 
 Matrix6 affine_viscosity(const Model& model, const Assembly& assembly) {
   if (model.damping.dashpot == Dashpot::none) return Matrix6::Zero();
-  return affine_sum(model, assembly, [&](std::size_t p, const auto& at) -> Coefficients {
-    const double root = root_overlap(at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
-    const double c = dashpot_now(model, assembly.pairs.cn[p], root);
-    return {c, model.damping.tangential_ratio * c};
-  });
+  return affine_sum(
+      model, assembly,
+      [&](std::size_t p, const auto& at) -> Coefficients {
+        const double root = root_overlap(at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
+        const double c = dashpot_now(model, assembly.pairs.cn[p], root);
+        return {c, model.damping.tangential_ratio * c};
+      },
+      false);
 }
 
 }  // namespace rvelab

@@ -23,6 +23,7 @@ struct Model {
   ContactModel contact;
   Damping damping;
   SolverOptions options;
+  std::vector<Water> water;  ///< none or one
   SharedArray<std::int64_t> id;
   SharedArray<std::int32_t> material;
   SharedArray<double> radius, mass, inertia;    ///< m, kg, kg m^2 (physical)
@@ -74,6 +75,22 @@ struct Model {
   }
 };
 
+/// Interactions of one kind other than contacts, as arrays; padded to a multiple of eight. In the order of (i, j,
+/// image), which is that of every sum over them.
+struct InteractionTable {
+  int kind = 0;           ///< of InteractionLaws
+  std::size_t count = 0;  ///< without the padding
+  std::vector<std::int32_t> i, j;
+  std::vector<Image> image;
+  std::vector<Buffer> column;  ///< as the law numbers them
+  // What follows from these, the grains and the pairs.
+  std::vector<std::int32_t> row_i, row_j;
+  std::vector<Buffer> image_number, radius;  ///< three, and those of i and of j
+  std::size_t row_at = 0;                    ///< the first of its force rows, and in space of its moments, in PairTable
+
+  std::size_t padded() const { return i.size(); }
+};
+
 /// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
 /// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
 /// what touched then, and with it the place of a pair, is nothing that a restart knows.
@@ -98,6 +115,8 @@ struct PairTable {
   /// listed pairs each: the grain loop takes 0.75 of the time; 1000: 0.98). And where the slots of those pairs are, two
   /// each.
   std::vector<std::int32_t> gathered, slots_beyond;
+  /// Interactions other than contacts, by kind, those that there are: their force rows stand behind those of the pairs.
+  std::vector<InteractionTable> interactions;
 
   std::size_t padded() const { return i.size(); }
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 
@@ -92,6 +93,48 @@ void add_contacts(const Model& model, const Assembly& assembly, Network& net) {
     add_torques(model, c, force, net);
     net.contacts.push_back(c);
   });
+}
+
+double spring_energy(double squared, double stiffness) { return stiffness > 0 ? 0.5 * squared / stiffness : 0; }
+
+void add_interactions(const Model& model, const Assembly& assembly, Network& net) {
+  for (const ActingInteraction& a : acting_interactions(model, assembly)) {
+    const InteractionTable& table =
+        *std::find_if(assembly.pairs.interactions.begin(), assembly.pairs.interactions.end(),
+                      [&](const InteractionTable& t) { return t.kind == a.kind; });
+    InteractionState c;
+    c.kind = a.kind;
+    c.i = std::int32_t(a.i);
+    c.j = std::int32_t(a.j);
+    c.image = table.image[a.place];
+    c.branch = a.branch;
+    c.normal = a.normal;
+    c.length = a.length;
+    c.overlap = model.radius[a.i] + model.radius[a.j] - a.length;
+    c.arm_i = a.arm_i * a.normal;
+    c.arm_j = -a.arm_j * a.normal;
+    c.normal_force = c.pressing_force = a.normal_force;
+    c.tangential_force = a.force - a.normal_force * a.normal;
+    // T_j = M - a_j n x f_t
+    const Vector3 moment = a.moment_j + a.arm_j * a.normal.cross(c.tangential_force);
+    c.twisting_moment = model.dimension() == 2 ? 0 : moment.dot(a.normal);
+    c.rolling_moment = moment - c.twisting_moment * a.normal;
+    c.normal_stiffness = a.stiffness.normal;
+    c.tangential_stiffness = a.stiffness.tangential;
+    c.rolling_stiffness = a.stiffness.bending;
+    c.twisting_stiffness = a.stiffness.twisting;
+    c.elastic_energy = a.energy;
+    if (!a.has_energy)
+      c.elastic_energy = (spring_energy(a.normal_force * a.normal_force, a.stiffness.normal) +
+                          spring_energy(c.tangential_force.squaredNorm(), a.stiffness.tangential)) +
+                         (spring_energy(c.rolling_moment.squaredNorm(), a.stiffness.bending) +
+                          spring_energy(c.twisting_moment * c.twisting_moment, a.stiffness.twisting));
+    net.grains[a.i].resultant -= a.force;
+    net.grains[a.j].resultant += a.force;
+    net.grains[a.i].torque += a.moment_i;
+    net.grains[a.j].torque += a.moment_j;
+    net.interactions.push_back(c);
+  }
 }
 
 template <Shape shape>
@@ -199,6 +242,7 @@ Network network_of(const Model& model, const Assembly& assembly) {
     static_cast<OwnValues&>(grain) = own_of(model.shape, model.own, g);
   }
   with_shape(model.shape, [&](auto shape) { add_contacts<shape.value>(model, assembly, net); });
+  add_interactions(model, assembly, net);
   return in_id_order(std::move(net), assembly.state.memory_order);
 }
 

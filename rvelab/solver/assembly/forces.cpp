@@ -6,6 +6,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 
 namespace rvelab {
@@ -44,6 +45,7 @@ void evaluate_forces(const Model& model, Assembly& assembly) {
   const StepConstants c = base_constants(model, assembly);
   model.kernels_at(assembly.state.last_step.loading)
       .evaluate(c, arrays_of(assembly.pairs), assembly.rows.data(), 0, long(assembly.pairs.padded()), nullptr);
+  evaluate_interactions(model, c, assembly);
   gather_pairs_that_touch(assembly.pairs);
 }
 
@@ -84,6 +86,7 @@ Matrix3 moment_in(const Model& model, const Assembly& assembly) {
   });
   Matrix3 sum = Matrix3::Zero();
   for (const Matrix3& piece : of_piece) sum += piece;
+  if (has_interactions(assembly)) sum += interaction_virial(model, assembly);
   return sum;
 }
 
@@ -104,6 +107,28 @@ void add_resultant(const Model& model, const PairTable& pairs, std::size_t p, st
     if (!model.contact.rolling) return;
     for (std::size_t c = 0; c < 3; ++c) r[3 + c] += (as_j ? 1 : -1) * pairs.moment[c][p] / model.radius[g];
   }
+}
+
+/// Adds what the interactions other than contacts give to their grains; the sum of their forces, and their number.
+template <int D>
+std::pair<double, std::size_t> add_interactions(const Model& model, const Assembly& assembly, double* resultants) {
+  if (!has_interactions(assembly)) return {0, 0};
+  double forces = 0;
+  const std::vector<ActingInteraction> all = acting_interactions(model, assembly);
+  for (const ActingInteraction& a : all) {
+    forces += a.force.norm();
+    for (const bool as_j : {false, true}) {
+      const std::size_t g = as_j ? a.j : a.i;
+      double* r = resultants + resultant_row<D> * g;
+      const Vector3& torque = as_j ? a.moment_j : a.moment_i;
+      for (std::size_t c = 0; c < D; ++c) r[c] += (as_j ? 1 : -1) * a.force[Eigen::Index(c)];
+      if constexpr (D == 2)
+        r[2] += torque[2] / model.radius[g];
+      else
+        for (std::size_t c = 0; c < 3; ++c) r[3 + c] += torque[Eigen::Index(c)] / model.radius[g];
+    }
+  }
+  return {forces, all.size()};
 }
 
 /// Sums over the contacts of a piece of the pairs.
@@ -185,6 +210,7 @@ OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
   const PairPlaces<shape> pair(model, assembly);
   const bool shared = model.sharing() != nullptr;
   std::vector<double> resultants(resultant_row<D> * model.size(), 0.0);
+  const auto [forces_between, acting] = add_interactions<D>(model, assembly, resultants.data());
   std::vector<ContactSums> of_pairs(pieces_in(assembly.pairs.listed));
   in_pieces(assembly.pairs.listed, model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_pairs[piece] = contacts_in(model, assembly, pair, first, last, shared ? nullptr : resultants.data());
@@ -208,8 +234,10 @@ OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
     balance.mean_couple += piece.couples;
     squares += piece.squares;
   }
+  contact_force += forces_between;
+  if (balance.touching > 0 || acting > 0)
+    balance.mean_contact_force = contact_force / double(std::max(balance.touching, acting));
   if (balance.touching > 0) {
-    balance.mean_contact_force = contact_force / double(balance.touching);
     balance.mean_overlap = overlap_sum / double(balance.touching);
   }
   // A sum is finite only if all its terms are, or if infinities cancel, which sums of squares cannot.
@@ -223,6 +251,7 @@ std::vector<Resultant> resultants_in(const Model& model, const Assembly& assembl
   constexpr int D = dimension_of(shape);
   const PairPlaces<shape> pair(model, assembly);
   std::vector<double> rows(resultant_row<D> * model.size(), 0.0);
+  add_interactions<D>(model, assembly, rows.data());
   std::vector<Resultant> resultants(model.size());
   in_pieces(model.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     gather_resultants<shape>(model, assembly, pair, first, last, rows.data());

@@ -34,7 +34,8 @@ void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t 
         if ((task < chunk) != as_j) continue;
         for (auto slot = pairs.slot_begin[block]; slot < pairs.slot_begin[block + 1]; ++slot) {
           const auto place = std::size_t(pairs.slots[4 * std::size_t(slot) + k % 4] / force_row);
-          if (place >= pairs.listed) break;  // padding: the tasks of the block have more pairs than this one
+          if (place >= pairs.listed)
+            break;  // interactions, or padding: tasks of the block have more pairs than this one
           at(start + (as_j ? task : task - chunk), place, as_j);
         }
       }

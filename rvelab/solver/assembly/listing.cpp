@@ -8,6 +8,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/oriented_bounds.hpp"
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/staleness.hpp"
@@ -86,8 +87,8 @@ void arrange(const Model& model, const Assembly& assembly, const std::vector<Lis
 }
 
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
-void fill(const Model& model, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
-          Assembly& assembly) {
+void fill(const Model& model, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried,
+          Interactions interactions, Lost lost, Assembly& assembly) {
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
   std::vector<const Contact*> histories(n, nullptr);
   std::size_t k = 0;
@@ -116,9 +117,13 @@ void fill(const Model& model, const std::vector<ListedPair>& listed, const std::
     pairs.i[p] = pairs.j[p] = std::int32_t(model.size());  // a padding grain: no extent, no mass
     pairs.image[p] = Image{1, 0, 0};
   }
+  prepare_bridges(model, assembly, listed, interactions);
+  set_interactions(model, interactions, pairs);
+  // The grain loop reads a moment beside each force row in space.
+  const std::size_t more = model.dimension() == 3 ? interaction_rows(pairs) : 0;
   for (int component = 0; component < model.tangential_components(); ++component) {
     pairs.tangential[component].assign(padded, 0.0);
-    if (model.contact.rolling) pairs.moment[component].assign(padded, 0.0);
+    if (model.contact.rolling || more > 0) pairs.moment[component].assign(padded + more, 0.0);
   }
   if (model.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
   in_pieces(n, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
@@ -204,14 +209,15 @@ std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs) {
   return all;
 }
 
-void list_with(const Model& model, std::vector<Contact> contacts, Assembly& assembly) {
+void list_with(const Model& model, std::vector<Contact> contacts, const Interactions& interactions,
+               Assembly& assembly) {
   sort_by_key(contacts);
   // The state says how far grains have come since the list of its run was made, and they may come back that far and as
   // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
   const double skin = assembly.state.list.skin,
                moved = assembly.state.list.built ? skin - listed_gap(model, assembly) : 0;
-  fill(model, near_pairs(model, assembly, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused,
-       assembly);
+  fill(model, near_pairs(model, assembly, skin + std::min(std::max(0.0, moved), skin)), contacts, interactions,
+       Lost::refused, assembly);
 }
 
 void check_height(const Model& model, const Cell& cell) {
@@ -226,6 +232,7 @@ void check_height(const Model& model, const Cell& cell) {
 
 Reduction rebuild(const Model& model, Assembly& assembly) {
   std::vector<Contact> carried = contacts_of(model, assembly.pairs);
+  Interactions interactions = interactions_of(assembly.pairs, true);
   if (assembly.state.list.built) assembly.state.list.skin = next_skin(model, assembly.state.list);
   const Reduction reduction = reduced(assembly.cell);
   if (reduction.changed) {
@@ -243,6 +250,7 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
         c.rolling_moment = back * c.rolling_moment;
       }
     }
+    follow_reduction(reduction, model.dimension(), interactions);
   }
   check_height(model, assembly.cell);
   std::vector<Image> moved(model.size(), Image{});
@@ -263,7 +271,8 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
     turn_round_if_needed(model, c);
   }
   sort_by_key(carried);
-  fill(model, near_pairs(model, assembly, assembly.state.list.skin), carried, Lost::dropped, assembly);
+  follow_wrapping(moved, model.dimension(), interactions);
+  fill(model, near_pairs(model, assembly, assembly.state.list.skin), carried, interactions, Lost::dropped, assembly);
   assembly.state.list.built = true;
   assembly.state.list.lattice = assembly.cell.lattice;
   assembly.state.list.travel = 0;

@@ -7,7 +7,7 @@ namespace rvelab {
 
 /// Lists the pairs of an assembly that is being opened and gives them their histories, in any order. Throws InputError
 /// if a contact is none of the pairs listed, IncrementFailed if the list would be too long (list_size.hpp).
-void list_with(const Model& model, std::vector<Contact> contacts, Assembly& assembly);
+void list_with(const Model& model, std::vector<Contact> contacts, const Interactions& interactions, Assembly& assembly);
 
 /// The pairs that have a history, ordered by (i, j, image).
 std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs);

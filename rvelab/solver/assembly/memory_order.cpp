@@ -31,6 +31,11 @@ void turn_round(Contact& c, Shape shape) {
   if (dimension_of(shape) == 3) c.tangential_force = -c.tangential_force;
 }
 
+template <class Law>
+void turn_round(Interaction<Law>& item, Shape shape) {
+  rvelab::turn_round<Law>(item, dimension_of(shape));
+}
+
 void turn_round(ContactState& c, Shape) {
   std::swap(c.arm_i, c.arm_j);
   c.branch = -c.branch;
@@ -38,6 +43,8 @@ void turn_round(ContactState& c, Shape) {
   c.tangential_force = -c.tangential_force;
   c.rolling_moment = -c.rolling_moment;
 }
+
+void turn_round(InteractionState& c, Shape shape) { turn_round(static_cast<ContactState&>(c), shape); }
 
 /// Contacts of grains that went to place_of[i]: indices, sides and order.
 template <class AnyContact>
@@ -51,6 +58,8 @@ void renumber(std::vector<AnyContact>& contacts, const std::vector<std::int32_t>
     turn_round(c, shape);
   }
   std::sort(contacts.begin(), contacts.end(), [](const AnyContact& x, const AnyContact& y) {
+    if constexpr (requires { x.kind; })
+      if (x.kind != y.kind) return x.kind < y.kind;
     return std::tie(x.i, x.j, x.image) < std::tie(y.i, y.j, y.image);
   });
 }
@@ -68,7 +77,10 @@ Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.state.list.positions, order);
   rearrange(s.state.masses.mass, order);
   rearrange(s.state.masses.inverse_inertia, order);
-  renumber(s.contacts, inverse_of(order), s.shape);
+  const std::vector<std::int32_t> place_of = inverse_of(order);
+  renumber(s.contacts, place_of, s.shape);
+  each_interaction_law(
+      [&](auto, auto law) { renumber(static_cast<ListOf<decltype(law)>&>(s).items, place_of, s.shape); });
   return s;
 }
 
@@ -117,6 +129,7 @@ Network in_id_order(Network network, const std::vector<std::int32_t>& order) {
   if (order.empty()) return network;
   rearrange(network.grains, inverse_of(order));
   renumber(network.contacts, order, network.shape);
+  renumber(network.interactions, order, network.shape);
   return network;
 }
 

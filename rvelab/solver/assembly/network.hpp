@@ -29,11 +29,19 @@ struct ContactState {
   Vector3 force() const { return normal_force * normal + tangential_force; }  ///< on j, N
 };
 
+/// An interaction other than a contact that acts now (an intact bond). The point halves the gap, overlap is minus the
+/// gap and may have either sign; rolling_moment and rolling_stiffness are those of bending.
+struct InteractionState : ContactState {
+  int kind = 0;                   ///< of InteractionLaws
+  double twisting_moment = 0;     ///< N m, on j about the normal
+  double twisting_stiffness = 0;  ///< N m
+};
+
 struct GrainState : OwnValues {
   double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
   Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (at a rate)
-  Vector3 resultant;                         ///< sum of contact forces, N
-  Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
+  Vector3 resultant;                         ///< sum of the forces of contacts and interactions, N
+  Vector3 torque = Vector3::Zero();          ///< sum of their torques, moments included, N m
   Vector3 orientation = Vector3::Zero();     ///< not round: along the long axis, cell frame
 };
 
@@ -42,12 +50,13 @@ struct Network {
   Cell cell;
   ContactModel model;
   std::vector<GrainState> grains;
-  std::vector<ContactState> contacts;       ///< ordered by (i, j, image)
-  double reference_contact_force = 0;       ///< N, floor of the unbalanced ratio is 1e-3 of it
-  double reference_pressure = 0;            ///< Pa
-  Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the cell, rad/s, zero in quasi-static loading: a
-                                            ///< grain's whole spin is this and its fluctuation
-  Loading loading = Loading::quasi_static;  ///< quasi-static velocities carry scaled masses: no kinetic stress
+  std::vector<ContactState> contacts;          ///< ordered by (i, j, image)
+  std::vector<InteractionState> interactions;  ///< kind by kind, each ordered by (i, j, image)
+  double reference_contact_force = 0;          ///< N, floor of the unbalanced ratio is 1e-3 of it
+  double reference_pressure = 0;               ///< Pa
+  Vector3 mean_spin = Vector3::Zero();         ///< axial(W + Omega) of the cell, rad/s, zero in quasi-static loading: a
+                                               ///< grain's whole spin is this and its fluctuation
+  Loading loading = Loading::quasi_static;     ///< quasi-static velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
 };
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 
 namespace rvelab {
 
@@ -12,6 +13,11 @@ std::size_t bytes_of(const PairTable& t) {
                     bytes(t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force,
                           t.radius_i, t.radius_j);
   for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
+  for (const InteractionTable& each : t.interactions) {
+    sum += bytes(each.i, each.j, each.image, each.row_i, each.row_j);
+    for (const auto* buffers : {&each.column, &each.image_number, &each.radius})
+      for (const Buffer& b : *buffers) sum += bytes(b);
+  }
   return sum;
 }
 
@@ -72,7 +78,7 @@ void derive_pairs(const Model& model, PairTable& pairs) {
   pairs.touched.assign(padded / 8, 0);
   pairs.shifted.assign(padded / 8, 0);
   for (std::size_t p = 0; p < padded; ++p) pairs.shifted[p / 8] |= std::uint8_t(is_shifted(pairs.image[p]));
-  pairs.force.assign(padded * std::size_t(force_row_length(model.dimension())), 0.0);
+  derive_interactions(model, pairs);  // force rows with them
   set_pair_parameters(model, pairs);
 }
 

@@ -10,6 +10,7 @@
 #include "rvelab/contact/kinds.hpp"
 #include "rvelab/contact/laws.hpp"
 #include "rvelab/grains/shape.hpp"
+#include "rvelab/interaction/laws.hpp"
 
 namespace rvelab {
 
@@ -20,6 +21,8 @@ struct KernelConfiguration {
   Slip slip = Slip::consistent;
   bool dashpot = false;
   HertzRadius hertz_radius = HertzRadius::equivalent;
+  bool moments =
+      false;  ///< interactions with moments act in space: the grain loop adds those up, as it does with rolling
 };
 
 /// Upper-triangular 3x3 matrix, in the order xx, xy, xz, yy, yz, zz.
@@ -122,6 +125,10 @@ constexpr int place_row_length = 8;
 using PlaceKernel = void (*)(const StepConstants&, const PairArrays&, const double* grain_rows, long begin, long end,
                              double* places);
 
+/// Of the interactions [begin, end) of one kind, multiples of eight.
+using InteractionKernel = void (*)(const StepConstants&, const InteractionArrays&, const double* grain_rows, long begin,
+                                   long end);
+
 /// Form of local damping that an integration kernel is compiled for.
 enum class KernelDamping { none, vector, component };
 
@@ -133,6 +140,9 @@ struct Kernels {
   PlaceKernel places = nullptr;            ///< shapes that are not round: where pairs are, for sums outside the loops
   GrainKernel quasi_static[3] = {};        ///< by KernelDamping
   GrainKernel at_rate[3] = {};
+  /// By the kind of interaction (interaction/laws.hpp), round grains: as `pairs` and `evaluate`.
+  InteractionKernel interactions[interaction_kinds] = {};
+  InteractionKernel evaluate_interactions[interaction_kinds] = {};
   int lanes = 1;
   const char* instruction_set = "scalar";
 };

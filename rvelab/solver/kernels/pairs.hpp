@@ -149,24 +149,5 @@ inline __attribute__((always_inline)) V without_tension(V normal, V law_constant
   return (pressing > 0.0) ? normal : normal - pressing;
 }
 
-/// A history vector in the tangent plane of the new normal, turned about n by the mean spin times dt (first order), and
-/// the factor that brings it back to its old length.
-template <class V>
-struct TurnedHistory {
-  Triple<V> vector;
-  V factor;
-};
-template <class V>
-inline __attribute__((always_inline)) TurnedHistory<V> turned_history(const Triple<V>& history, const Triple<V>& n,
-                                                                      V angle, bool twist) {
-  const V one = V{} + 1.0;
-  const V before = dot(history, history);
-  Triple<V> h = plus(history, -dot(history, n), n);
-  if (twist) h = plus(h, angle, cross(n, h));
-  const V after = dot(h, h);
-  const V factor = square_root(before / ((after > 0.0) ? after : one));
-  return {h, (after > 0.0) ? factor : V{}};
-}
-
 }  // namespace
 }  // namespace rvelab

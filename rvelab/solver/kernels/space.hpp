@@ -31,18 +31,6 @@ struct SpaceMotion {
   V twist;              ///< mean spin of the two about n, rad/s
 };
 
-/// Three columns of pair arrays.
-template <class V>
-inline __attribute__((always_inline)) Triple<V> load_triple(double* const* from, long at) {
-  return {load_as<V>(from[0] + at), load_as<V>(from[1] + at), load_as<V>(from[2] + at)};
-}
-template <class V>
-inline __attribute__((always_inline)) void store_triple(double* const* to, long at, const Triple<V>& value) {
-  store_as(to[0] + at, value.x);
-  store_as(to[1] + at, value.y);
-  store_as(to[2] + at, value.z);
-}
-
 /// The slip rate and the turned histories. A pass ends with its roots: what they give is multiplied in the next one
 /// (time of the pair loop, Hertz, AVX2: 1.03 with the histories carried here, 1.18 with force rows made beside the root
 /// of the slip).

@@ -7,6 +7,7 @@
 
 #include "rvelab/solver/kernels/integrate_discs.hpp"
 #include "rvelab/solver/kernels/integrate_spheres.hpp"
+#include "rvelab/solver/kernels/interaction_loops.hpp"
 #include "rvelab/solver/kernels/plane.hpp"
 #include "rvelab/solver/kernels/space.hpp"
 
@@ -83,6 +84,24 @@ void set_grain_kernels(Kernels& kernels) {
   kernels.at_rate[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
 }
 
+template <int dimension, class Law, int W, bool Advance>
+constexpr InteractionKernel interaction_kernel() {
+  if constexpr (dimension == 2)
+    return &plane_interactions<Law, W, Advance>;
+  else
+    return &space_interactions<Law, W, Advance>;
+}
+
+template <int dimension, int W, class... Each>
+void set_interaction_kernels(Kernels& kernels, TypeList<Each...>) {
+  const InteractionKernel advancing[] = {interaction_kernel<dimension, Each, W, true>()...};
+  for (int kind = 0; kind < interaction_kinds; ++kind) kernels.interactions[kind] = advancing[kind];
+  if constexpr (W == 1) {
+    const InteractionKernel standing[] = {interaction_kernel<dimension, Each, W, false>()...};
+    for (int kind = 0; kind < interaction_kinds; ++kind) kernels.evaluate_interactions[kind] = standing[kind];
+  }
+}
+
 /// The advancing kernels of one shape at W lanes; of the scalar reference those that do not advance too.
 template <class Pairs, int W>
 void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
@@ -91,7 +110,8 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
     kernels.pairs_with_losses = kernels.pairs;
     kernels.evaluate = pair_kernel_for<Pairs, W, false>(key);
   }
-  if (key.rolling)
+  if constexpr (Pairs::By::round) set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
+  if (key.rolling || key.moments)
     set_grain_kernels<Pairs, W, true>(kernels);
   else
     set_grain_kernels<Pairs, W, false>(kernels);

@@ -9,6 +9,7 @@
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 #include "rvelab/solver/loading/median.hpp"
 #include "rvelab/solver/loading/typical_answers.hpp"
@@ -213,6 +214,25 @@ inline __attribute__((always_inline)) void add(const Model& model, const PairTer
     sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * model.damping.tangential_ratio);
 }
 
+/// Adds the interactions other than contacts: as contacts, with arms as they are and with both moments.
+template <int D>
+void add_interactions(const Model& model, const Assembly& assembly, std::vector<GrainSums<D>>& sums) {
+  if (!has_interactions(assembly)) return;
+  for (const ActingInteraction& a : acting_interactions(model, assembly)) {
+    const double kt = a.stiffness.tangential + 0.5 * std::abs(a.normal_force) / a.length;
+    const double turning = 2 * std::max(a.stiffness.bending, a.stiffness.twisting);
+    // A branch that a force pulls apart softens: no more than nothing.
+    const Symmetric<D> stiffness = stiffness_along<D>(2 * std::max(0.0, a.stiffness.normal) - 4 * kt, 4 * kt,
+                                                      a.normal[0], a.normal[1], a.normal[2]);
+    for (const bool as_j : {false, true}) {
+      GrainSums<D>& of = sums[as_j ? a.j : a.i];
+      const double arm = as_j ? a.arm_j : a.arm_i;
+      add_to<D>(of.stiffness, stiffness);
+      of.rotation += 4 * a.stiffness.tangential * arm * arm + turning;
+    }
+  }
+}
+
 /// Stiffnesses of the contacts, of which floors are medians.
 struct Firmness {
   std::vector<double> translation, rotation;
@@ -277,7 +297,8 @@ RowSums sums_over_pairs(const Model& model, const Assembly& assembly) {
   const std::size_t n = model.size();
   const bool dashpot = model.damping.dashpot != Dashpot::none;
   Firmness firmness;
-  const std::vector<GrainSums<D>> of_grain = sums_of_grains<shape, Force>(model, assembly, firmness);
+  std::vector<GrainSums<D>> of_grain = sums_of_grains<shape, Force>(model, assembly, firmness);
+  add_interactions<D>(model, assembly, of_grain);
   RowSums sums;
   sums.rotation.resize(n);
   sums.translation.resize(n);

@@ -9,6 +9,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
@@ -207,7 +208,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
       step_(what.step),
       check_every_(what.check_every),
       in_one_sweep_(model_.size() >= least_grains_in_one_sweep && !model_.options.energy_balance &&
-                    (team_ == nullptr || team_->count() == 1)),
+                    !has_interactions(assembly_) && (team_ == nullptr || team_->count() == 1)),
       clock_(model_.times) {
   c_.losses = model_.options.energy_balance;
   c_.local_damping = at_rate_ ? model_.damping.local : what.damping * model_.damping.local_quasi_static;
@@ -284,6 +285,7 @@ void SubSteps::update_pairs() {
   else
     sweep_pairs(kernels_.pairs, c_, pairs_, assembly_.rows.data(), long(assembly_.pairs.padded()), team_);
   gather_pairs_that_touch(assembly_.pairs);
+  if (has_interactions(assembly_)) update_interactions(model_, kernels_, c_, assembly_);
   clock_.end_pairs();
   if (model_.options.energy_balance)
     book_step(model_, assembly_, lost, sums_, step_, at_rate_, rate_mid_ + cross_matrix(omega_), moment_before_);

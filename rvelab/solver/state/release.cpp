@@ -19,6 +19,11 @@ void each_working_array(Of& a, const Each& each) {
     each(*buffer);
   for (auto* list : {&t.row_i, &t.row_j, &t.gathered, &t.slots_beyond}) each(*list);
   for (auto* marks : {&t.touched, &t.shifted}) each(*marks);
+  for (auto& interactions : t.interactions) {
+    for (auto* list : {&interactions.row_i, &interactions.row_j}) each(*list);
+    for (auto* buffers : {&interactions.image_number, &interactions.radius})
+      for (auto& buffer : *buffers) each(buffer);
+  }
 }
 
 template <class Array>
@@ -73,6 +78,10 @@ Memory memory_of(const Assembly& assembly) {
   for (int k = 0; k < 3; ++k) m.state += bytes_of(t.tangential[k]) + bytes_of(t.moment[k]);
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
            bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(assembly.state.list.positions);
+  for (const InteractionTable& each : t.interactions) {
+    for (const Buffer& b : each.column) m.state += bytes_of(b);
+    m.list += bytes_of(each.i) + bytes_of(each.j) + bytes_of(each.image);
+  }
   each_working_array(assembly, [&m](const auto& array) { m.working += bytes_of(array); });
   return m;
 }

@@ -19,6 +19,8 @@ void Trial::begin(Assembly& assembly, Changes changes) {
     moment_[k] = assembly.pairs.moment[k];
   }
   root_overlap_ = assembly.pairs.root_overlap;
+  interactions_.resize(assembly.pairs.interactions.size());
+  for (std::size_t t = 0; t < interactions_.size(); ++t) interactions_[t] = assembly.pairs.interactions[t].column;
   std::vector<Vector3> positions;
   positions.swap(assembly.state.list.positions);
   try {
@@ -69,6 +71,7 @@ void Trial::exchange(const Model& model, Assembly& assembly, bool released) noex
       assembly.pairs.moment[k].swap(moment_[k]);
     }
     assembly.pairs.root_overlap.swap(root_overlap_);
+    for (std::size_t t = 0; t < interactions_.size(); ++t) assembly.pairs.interactions[t].column.swap(interactions_[t]);
   }
   if (released) return;
   std::fill(assembly.pairs.touched.begin(), assembly.pairs.touched.end(),
@@ -81,6 +84,8 @@ std::size_t Trial::bytes() const {
   for (const Buffer* b : {&rows_, &replaced_.mass, &replaced_.inverse_mass, &replaced_.inverse_inertia, &root_overlap_,
                           &tangential_[0], &tangential_[1], &tangential_[2], &moment_[0], &moment_[1], &moment_[2]})
     sum += b->capacity() * sizeof(double);
+  for (const std::vector<Buffer>& columns : interactions_)
+    for (const Buffer& b : columns) sum += b.capacity() * sizeof(double);
   return sum + (state_.list.positions.capacity() + replaced_.list_positions.capacity()) * sizeof(Vector3) +
          state_.memory_order.capacity() * sizeof(std::int32_t);
 }

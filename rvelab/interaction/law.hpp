@@ -1,0 +1,90 @@
+// What the law of an interaction other than a contact declares and is handed. An interaction is a pair of grains on
+// which forces act whether the grains touch or not, such as a bond; it is made in a test, kept with numbers of its own,
+// and ends by its law. A law is one file, like parallel_bond.hpp, and a word in laws.hpp: specimens, files, snapshots,
+// trials, the turning of cells and the step kernels follow from what it declares.
+//
+// This room knows two grains at a time. No standard library: step kernels include the laws.
+#pragma once
+
+#include <cstdint>
+
+#include "rvelab/contact/parameter.hpp"
+#include "rvelab/lanes/vectors.hpp"
+
+namespace rvelab {
+
+constexpr Interval any_number{-no_bound, no_bound, true, true};
+
+/// How a number that an interaction keeps turns with its grains.
+enum class Turning {
+  scalar,
+  tangent,  ///< a vector on j across the normal; in the plane its component along t = (-n_y, n_x), the first of three
+  moment    ///< a moment on j across the normal; in the plane about z, the third of three
+};
+
+/// A number, or three, that each interaction keeps; `name` as files write it, ends in its unit.
+struct InteractionField {
+  const char *name, *unit;
+  Interval allowed;
+  Turning turning = Turning::scalar;
+};
+
+/// Doubles that the fields of a law take.
+template <class Law>
+constexpr int interaction_columns() {
+  int columns = 0;
+  for (const InteractionField& field : Law::fields) columns += field.turning == Turning::scalar ? 1 : 3;
+  return columns;
+}
+constexpr int most_interaction_columns = 24;
+
+/// Interactions of one kind, padded to a multiple of eight with some between padding grains.
+struct InteractionArrays {
+  const std::int32_t *row_i = nullptr, *row_j = nullptr;  ///< as those of PairArrays (solver/kernels/configuration.hpp)
+  const double* image[3] = {};
+  const double *radius_i = nullptr, *radius_j = nullptr;  ///< m
+  double* column[most_interaction_columns] = {};          ///< the fields of the law, one after the other
+  double thickness = 0;                                   ///< m, in the plane
+  /// Force rows behind those of the pairs, and alike: in the plane {fx, fy, T_j, T_i}, in space {fx, fy, fz, -gap/2, n
+  /// x f_t, 0} with the moment on j apart.
+  double* force = nullptr;
+  double* moment[3] = {};
+};
+
+namespace {
+
+/// Motion of W pairs in the plane over a sub-step.
+template <class V>
+struct PlaneMotion {
+  V length;     ///< of the branch, m
+  V slip = {};  ///< of j against i along t half way along the branch, m
+  V turn = {};  ///< of j less that of i, rad
+};
+/// On j, N and N m; the normal force is positive in compression.
+template <class V>
+struct PlaneForces {
+  V normal, tangential, moment;
+};
+
+/// Motion of W pairs in space over a sub-step.
+template <class V>
+struct SpaceTurn {
+  Triple<V> n;          ///< from i to j
+  V length;             ///< of the branch, m
+  Triple<V> slip = {};  ///< of j against i across n half way along the branch, m
+  Triple<V> turn = {};  ///< of j less that of i, rad
+};
+template <class V>
+struct SpaceForces {
+  V normal;
+  Triple<V> tangential, moment;
+};
+
+}  // namespace
+
+/// Elastic stiffness of an interaction now. N/m; N m: against bending and, in space, against twisting.
+struct InteractionStiffness {
+  double normal = 0, tangential = 0, bending = 0, twisting = 0;
+};
+
+}  // namespace rvelab

@@ -1,0 +1,257 @@
+#include "rvelab/solver/assembly/interactions.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/interaction/bridge_of_pair.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// with(Law{}) for the law of this number.
+template <class With, class First, class... Rest>
+auto with_interaction_law(int kind, const With& with, TypeList<First, Rest...>) {
+  if constexpr (sizeof...(Rest) > 0) {
+    if (kind > 0) return with_interaction_law(kind - 1, with, TypeList<Rest...>{});
+  }
+  return with(First{});
+}
+template <class With>
+auto with_interaction_law(int kind, const With& with) {
+  return with_interaction_law(kind, with, InteractionLaws{});
+}
+
+InteractionArrays arrays_of(const Model& model, PairTable& pairs, InteractionTable& table) {
+  InteractionArrays a;
+  a.row_i = table.row_i.data();
+  a.row_j = table.row_j.data();
+  for (std::size_t k = 0; k < 3; ++k) a.image[k] = table.image_number[k].data();
+  a.radius_i = table.radius[0].data();
+  a.radius_j = table.radius[1].data();
+  for (std::size_t k = 0; k < table.column.size(); ++k) a.column[k] = table.column[k].data();
+  a.thickness = model.dimension() == 2 ? model.thickness : 0;
+  a.force = pairs.force.data() + table.row_at * std::size_t(force_row_length(model.dimension()));
+  if (model.dimension() == 3)
+    for (std::size_t k = 0; k < 3; ++k) a.moment[k] = pairs.moment[k].data() + table.row_at;
+  return a;
+}
+
+template <class Law>
+void sort(std::vector<Interaction<Law>>& items) {
+  std::sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return pair_of(a) < pair_of(b); });
+}
+
+}  // namespace
+
+void set_interactions(const Model& model, const Interactions& from, PairTable& pairs) {
+  pairs.interactions.clear();
+  each_interaction_law([&](auto kind, auto law) {
+    using Law = decltype(law);
+    const auto& items = static_cast<const ListOf<Law>&>(from).items;
+    if (items.empty()) return;
+    InteractionTable t;
+    t.kind = kind;
+    t.count = items.size();
+    const std::size_t padded = padded_to_lanes(t.count);
+    t.i.assign(padded, std::int32_t(model.size()));  // padding grains
+    t.j = t.i;
+    t.image.assign(padded, Image{1, 0, 0});
+    constexpr int columns = interaction_columns<Law>();
+    t.column.assign(columns, Buffer(padded, 0.0));
+    double values[columns];
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      t.i[k] = items[k].i;
+      t.j[k] = items[k].j;
+      t.image[k] = items[k].image;
+      put_columns<Law>(items[k], values);
+      for (std::size_t c = 0; c < columns; ++c) t.column[c][k] = values[c];
+    }
+    pairs.interactions.push_back(std::move(t));
+  });
+}
+
+Interactions interactions_of(const PairTable& pairs, bool all) {
+  Interactions found;
+  each_interaction_law([&](auto kind, auto law) {
+    using Law = decltype(law);
+    for (const InteractionTable& t : pairs.interactions) {
+      if (t.kind != kind) continue;
+      auto& items = static_cast<ListOf<Law>&>(found).items;
+      double values[interaction_columns<Law>()];
+      for (std::size_t k = 0; k < t.count; ++k) {
+        for (std::size_t c = 0; c < t.column.size(); ++c) values[c] = t.column[c][k];
+        if (!all && !Law::kept([&](int c) { return values[c]; })) continue;
+        Interaction<Law>& item = items.emplace_back();
+        item.i = t.i[k];
+        item.j = t.j[k];
+        item.image = t.image[k];
+        take_columns<Law>(values, item);
+      }
+    }
+  });
+  return found;
+}
+
+void follow_reduction(const Reduction& reduction, int dimension, Interactions& interactions) {
+  const Matrix3 back = reduction.rotation.transpose();
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    for (Interaction<Law>& item : static_cast<ListOf<Law>&>(interactions).items) {
+      const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(item.image[0], item.image[1], item.image[2]);
+      item.image = {n[0], n[1], n[2]};
+      if (dimension == 3) turn_vectors<Law>(item, back);
+    }
+  });
+}
+
+void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions) {
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    auto& items = static_cast<ListOf<Law>&>(interactions).items;
+    for (Interaction<Law>& item : items) {
+      for (std::size_t k = 0; k < 3; ++k)
+        item.image[k] += moved[std::size_t(item.i)][k] - moved[std::size_t(item.j)][k];
+      if (item.i != item.j || points_forward(item.image)) continue;
+      for (int& n : item.image) n = -n;
+      turn_round<Law>(item, dimension);
+    }
+    sort<Law>(items);
+  });
+}
+
+void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                     Interactions& interactions) {
+  if (model.water.empty()) return;
+  using Bridge = Interaction<CapillaryBridge>;
+  std::vector<Bridge>& bridges = static_cast<ListOf<CapillaryBridge>&>(interactions).items;
+  const std::vector<Bridge> before = std::move(bridges);
+  bridges.clear();
+  auto old = before.begin();
+  double columns[interaction_columns<CapillaryBridge>()];
+  const auto is_present = [&](const Bridge& bridge) {
+    put_columns<CapillaryBridge>(bridge, columns);
+    return columns[CapillaryBridge::present] != 0;
+  };
+  for (const ListedPair& pair : listed) {
+    Bridge bridge;
+    bridge.i = pair.i;
+    bridge.j = pair.j;
+    bridge.image = pair.image;
+    for (; old != before.end() && pair_of(*old) < pair_of(bridge); ++old)
+      if (is_present(*old)) bridges.push_back(*old);
+    if (old != before.end() && pair_of(*old) == pair_of(bridge)) {
+      bridges.push_back(*old++);
+      continue;
+    }
+    make_bridge(model.water.front(), model.radius[std::size_t(pair.i)], model.radius[std::size_t(pair.j)],
+                model.dimension() == 2 ? model.thickness : 0, columns);
+    const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
+    const Vector3 branch =
+        assembly.position(model, j) + translation(assembly.cell, pair.image) - assembly.position(model, i);
+    if (branch.norm() < model.radius[i] + model.radius[j]) columns[CapillaryBridge::present] = 1;
+    take_columns<CapillaryBridge>(columns, bridge);
+    bridges.push_back(bridge);
+  }
+  for (; old != before.end(); ++old)
+    if (is_present(*old)) bridges.push_back(*old);
+}
+
+std::size_t interaction_rows(const PairTable& pairs) {
+  std::size_t rows = 0;
+  for (const InteractionTable& t : pairs.interactions) rows += t.padded();
+  return rows;
+}
+
+void derive_interactions(const Model& model, PairTable& pairs) {
+  std::size_t row = pairs.padded();
+  pairs.force.assign((row + interaction_rows(pairs)) * std::size_t(force_row_length(model.dimension())), 0.0);
+  for (InteractionTable& t : pairs.interactions) {
+    t.row_at = row;
+    row += t.padded();
+    t.row_i.resize(t.padded());
+    t.row_j.resize(t.padded());
+    t.image_number.assign(3, Buffer(t.padded(), 0.0));
+    t.radius.assign(2, Buffer(t.padded(), 0.0));
+    for (std::size_t k = 0; k < t.padded(); ++k) {
+      t.row_i[k] = t.i[k] * model.row_length();
+      t.row_j[k] = t.j[k] * model.row_length();
+      for (std::size_t c = 0; c < 3; ++c) t.image_number[c][k] = t.image[k][c];
+      if (k >= t.count) continue;
+      t.radius[0][k] = model.radius[std::size_t(t.i[k])];
+      t.radius[1][k] = model.radius[std::size_t(t.j[k])];
+    }
+  }
+}
+
+namespace {
+
+void run(const Model& model, const InteractionKernel* kernels, const StepConstants& constants, Assembly& assembly) {
+  for (InteractionTable& t : assembly.pairs.interactions)
+    kernels[t.kind](constants, arrays_of(model, assembly.pairs, t), assembly.rows.data(), 0, long(t.padded()));
+}
+
+}  // namespace
+
+void update_interactions(const Model& model, const Kernels& kernels, const StepConstants& constants,
+                         Assembly& assembly) {
+  run(model, kernels.interactions, constants, assembly);
+}
+
+void evaluate_interactions(const Model& model, const StepConstants& constants, Assembly& assembly) {
+  run(model, model.kernels_at(assembly.state.last_step.loading).evaluate_interactions, constants, assembly);
+}
+
+std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly) {
+  std::vector<ActingInteraction> all;
+  const bool plane = model.dimension() == 2;
+  for (const InteractionTable& t : assembly.pairs.interactions) {
+    with_interaction_law(t.kind, [&](auto law) {
+      using Law = decltype(law);
+      for (std::size_t k = 0; k < t.count; ++k) {
+        const auto column = [&](int c) { return t.column[std::size_t(c)][k]; };
+        if (!Law::acts(column)) continue;
+        ActingInteraction a;
+        a.kind = t.kind;
+        a.i = std::size_t(t.i[k]);
+        a.j = std::size_t(t.j[k]);
+        a.place = k;
+        a.branch =
+            assembly.position(model, a.j) + translation(assembly.cell, t.image[k]) - assembly.position(model, a.i);
+        a.length = a.branch.norm();
+        a.normal = a.branch / a.length;
+        const double half_gap = 0.5 * (a.length - (model.radius[a.i] + model.radius[a.j]));
+        a.arm_i = model.radius[a.i] + half_gap;
+        a.arm_j = model.radius[a.j] + half_gap;
+        const double* row = assembly.pairs.force.data() + (t.row_at + k) * (plane ? 4 : 8);
+        if (plane) {
+          a.force = {row[0], row[1], 0};
+          a.moment_j = {0, 0, row[2]};
+          a.moment_i = {0, 0, row[3]};
+        } else {
+          a.force = {row[0], row[1], row[2]};
+          const Vector3 turning(row[4], row[5], row[6]);
+          for (int c = 0; c < 3; ++c) a.moment_j[c] = assembly.pairs.moment[c][t.row_at + k];
+          a.moment_i = -a.moment_j - a.arm_i * turning;
+          a.moment_j -= a.arm_j * turning;
+        }
+        a.normal_force = a.force.dot(a.normal);
+        const double thickness = plane ? model.thickness : 0;
+        a.stiffness = Law::stiffness(column, 2 * half_gap, thickness);
+        a.has_energy = Law::has_energy;
+        if constexpr (Law::has_energy) a.energy = Law::energy(column, 2 * half_gap, thickness);
+        all.push_back(a);
+      }
+    });
+  }
+  return all;
+}
+
+Matrix3 interaction_virial(const Model& model, const Assembly& assembly) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const ActingInteraction& a : acting_interactions(model, assembly)) sum += a.force * a.branch.transpose();
+  return sum;
+}
+
+}  // namespace rvelab

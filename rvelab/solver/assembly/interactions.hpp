@@ -1,0 +1,52 @@
+// Interactions other than contacts (rvelab/interaction) in an assembly: taken from a specimen and given back, listed
+// with the pairs, updated in each sub-step. An assembly without any pays for none of it.
+#pragma once
+
+#include "rvelab/solver/assembly/assembly.hpp"
+
+namespace rvelab {
+
+/// Puts them into the table, in order; their derived arrays are made with those of the pairs.
+void set_interactions(const Model& model, const Interactions& from, PairTable& pairs);
+/// `all`: also what stands for pairs that are only near (bridges that are not there).
+Interactions interactions_of(const PairTable& pairs, bool all = false);
+/// Bridges that may form: each listed pair, in order, has one, present or not; those that are not present and not listed
+/// go. A pair that touches and had none is wetted. Nothing in a specimen without water.
+void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                     Interactions& interactions);
+/// After the basis of the lattice changed, the frame turned by `turn`, grains g moved by moved[g] lattice vectors.
+void follow_reduction(const Reduction& reduction, int dimension, Interactions& interactions);
+void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions);
+
+/// Force rows that they take.
+std::size_t interaction_rows(const PairTable& pairs);
+/// Derived arrays, with the force rows of pairs and interactions (zero).
+void derive_interactions(const Model& model, PairTable& pairs);
+
+/// Advances them by a sub-step.
+void update_interactions(const Model& model, const Kernels& kernels, const StepConstants& constants,
+                         Assembly& assembly);
+/// Force rows from what they keep; nothing advances.
+void evaluate_interactions(const Model& model, const StepConstants& constants, Assembly& assembly);
+
+/// One that acts, as it lies now. Cell frame; forces and moments are those on grain j.
+struct ActingInteraction {
+  int kind = 0;
+  std::size_t i, j, place;  ///< grains; where it stands in its table
+  Vector3 branch, normal;
+  double length, arm_i, arm_j;  ///< m
+  Vector3 force;                ///< N
+  Vector3 moment_i, moment_j;   ///< N m, on either grain about its centre
+  InteractionStiffness stiffness;
+  double normal_force;  ///< N, positive in compression
+  bool has_energy = false;
+  double energy = 0;  ///< J, where the law has one by itself: else that of linear springs
+};
+/// In order, kind by kind, from the force rows as they stand.
+std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly);
+
+/// Their part of contact_virial, N m.
+Matrix3 interaction_virial(const Model& model, const Assembly& assembly);
+inline bool has_interactions(const Assembly& assembly) { return !assembly.pairs.interactions.empty(); }
+
+}  // namespace rvelab
