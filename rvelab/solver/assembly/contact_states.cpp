@@ -98,7 +98,7 @@ void add_contacts(const Model& model, const Assembly& assembly, Network& net) {
 double spring_energy(double squared, double stiffness) { return stiffness > 0 ? 0.5 * squared / stiffness : 0; }
 
 void add_interactions(const Model& model, const Assembly& assembly, Network& net) {
-  for (const ActingInteraction& a : acting_interactions(model, assembly)) {
+  for (const ActingInteraction& a : acting_interactions(model, assembly, true)) {
     const InteractionTable& table =
         *std::find_if(assembly.pairs.interactions.begin(), assembly.pairs.interactions.end(),
                       [&](const InteractionTable& t) { return t.kind == a.kind; });

@@ -203,7 +203,7 @@ void evaluate_interactions(const Model& model, const StepConstants& constants, A
   run(model, model.kernels_at(assembly.state.last_step.loading).evaluate_interactions, constants, assembly);
 }
 
-std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly) {
+std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly, bool energies) {
   std::vector<ActingInteraction> all;
   const bool plane = model.dimension() == 2;
   for (const InteractionTable& t : assembly.pairs.interactions) {
@@ -240,7 +240,8 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
         const double thickness = plane ? model.thickness : 0;
         a.stiffness = Law::stiffness(column, 2 * half_gap, thickness);
         a.has_energy = Law::has_energy;
-        if constexpr (Law::has_energy) a.energy = Law::energy(column, 2 * half_gap, thickness);
+        if constexpr (Law::has_energy)
+          if (energies) a.energy = Law::energy(column, 2 * half_gap, thickness);
         all.push_back(a);
       }
     });

@@ -10,8 +10,8 @@ namespace rvelab {
 void set_interactions(const Model& model, const Interactions& from, PairTable& pairs);
 /// `all`: also what stands for pairs that are only near (bridges that are not there).
 Interactions interactions_of(const PairTable& pairs, bool all = false);
-/// Bridges that may form: each listed pair, in order, has one, present or not; those that are not present and not listed
-/// go. A pair that touches and had none is wetted. Nothing in a specimen without water.
+/// Bridges that may form: each listed pair, in order, has one, present or not; those that are not present and not
+/// listed go. A pair that touches and had none is wetted. Nothing in a specimen without water.
 void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
                      Interactions& interactions);
 /// After the basis of the lattice changed, the frame turned by `turn`, grains g moved by moved[g] lattice vectors.
@@ -42,8 +42,9 @@ struct ActingInteraction {
   bool has_energy = false;
   double energy = 0;  ///< J, where the law has one by itself: else that of linear springs
 };
-/// In order, kind by kind, from the force rows as they stand.
-std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly);
+/// In order, kind by kind, from the force rows as they stand. `energies`: those of laws that have one by themselves are
+/// wanted; a bridge's is an integral, which stress control did not ask for (200 moist spheres: 50 times the time).
+std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly, bool energies = false);
 
 /// Their part of contact_virial, N m.
 Matrix3 interaction_virial(const Model& model, const Assembly& assembly);
