@@ -3,12 +3,13 @@
 
 #include "rvelab/interaction/adhesion.hpp"
 #include "tests/catch.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab::interaction;
+using rvelab::test::pi;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double work = 0.14, modulus = 3.7e9, radius = 11e-6;  // J/m^2, Pa, m
 
 double jkr_force_of(double a) {

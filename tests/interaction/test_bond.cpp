@@ -5,12 +5,10 @@
 
 #include "rvelab/interaction/bond_ageing.hpp"
 #include "tests/catch.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab::interaction;
-
-namespace {
-constexpr double pi = 3.14159265358979323846;
-}
+using rvelab::test::pi;
 
 TEST_CASE("sections: disc pi R^2, pi R^4/4, pi R^4/2; rectangle 2 R t, 2 R^3 t/3", "[interaction]") {
   const BondSection disc = disc_section(2), plane = rectangle_section(3, 0.5);

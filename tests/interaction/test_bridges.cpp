@@ -10,12 +10,12 @@
 
 #include "rvelab/interaction/capillary.hpp"
 #include "tests/catch.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab::interaction;
+using rvelab::test::pi;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 using Row = std::map<std::string, double>;
 

@@ -3,12 +3,12 @@
 
 #include "rvelab/interaction/planar_bridge.hpp"
 #include "tests/catch.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab::interaction;
+using rvelab::test::pi;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Area between the discs below both menisci, by strips along the line of centres; twice the upper half.
 double area_by_strips(const PlanarPair& p, double gap, double rho, double height, double x1) {
