@@ -41,7 +41,8 @@ double decay_without_tension(double zeta) {
   }
   if (under > -1e-8) return 2;  // critical: both sides meet here
   const double root = std::sqrt(-under);
-  return zeta / root * natural_logarithm((zeta + root) / (zeta - root));
+  // (zeta + root)/(zeta - root) = (zeta + root)^2, which a large zeta does not divide by zero.
+  return zeta / root * (2 * natural_logarithm(zeta + root));
 }
 
 }  // namespace

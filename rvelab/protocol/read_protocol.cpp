@@ -131,7 +131,8 @@ double largest_pressure(const TableReader& reader) {
     if (node == nullptr) continue;
     if (node->is_number()) largest = std::max(largest, number_in(*node));
     if (const toml::array* list = node->as_array())
-      for (const auto& each : *list) largest = std::max(largest, number_in(each));
+      for (const auto& each : *list)
+        if (each.is_number()) largest = std::max(largest, number_in(each));
   }
   return largest;
 }

@@ -15,6 +15,7 @@
 #include "rvelab/solver/quasi_static/quasi_static.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "rvelab/solver/state/state.hpp"
+#include "rvelab/specimen/specimen_check.hpp"
 
 namespace rvelab {
 
@@ -264,13 +265,18 @@ void Rve::set_water(const Water& water) {
   const bool plane = changed.cell.dimension == 2;
   changed.water = {water};
   // Bridges that are there stay, as those of the new water.
+  auto& items = static_cast<ListOf<CapillaryBridge>&>(changed).items;
+  auto bridges = std::move(items);
+  items.clear();
+  check_specimen(changed);  // that this water can be, before bridges are made of it
   double columns[interaction_columns<CapillaryBridge>()];
-  for (auto& bridge : static_cast<ListOf<CapillaryBridge>&>(changed).items) {
+  for (auto& bridge : bridges) {
     make_bridge(water, changed.grains.radius[std::size_t(bridge.i)], changed.grains.radius[std::size_t(bridge.j)],
                 plane ? changed.cell.lattice(2, 2) : 0, columns);
     columns[CapillaryBridge::present] = 1;
     take_columns<CapillaryBridge>(columns, bridge);
   }
+  items = std::move(bridges);
   changed.state.masses = {};
   open_instead(changed);
 }

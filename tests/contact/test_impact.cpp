@@ -15,3 +15,12 @@ TEST_CASE("the fifth root is right to a few of the last bits, and exact in power
   CHECK(fifth_root(0) == 0);
   CHECK(fifth_root(32) == 2);
 }
+
+TEST_CASE("dashpots of any restitution are found: where the force ends, exp(-decay) of the speed is left") {
+  // Overdamped, the contact ends after ln((z + r)/(z - r))/(2 r omega), r^2 = z^2 - 1: decay 2 z/r ln(z + r).
+  for (const double restitution : {1e-3, 1e-8, 1e-20, 1e-100, 1e-300}) {
+    const double zeta = damping_ratio(restitution, true), root = std::sqrt(zeta * zeta - 1);
+    REQUIRE(std::isfinite(zeta));
+    CHECK(zeta / root * 2 * std::log(zeta + root) == Approx(-std::log(restitution)).epsilon(1e-9));
+  }
+}

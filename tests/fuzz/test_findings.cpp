@@ -52,6 +52,11 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
   const std::string shear = "[test]\nname = \"t\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\n";
   CHECK_THAT(input_error([&] { protocol::parse_protocol(shear + "record_every = -9223372036854775807\n", "t.toml"); }),
              Contains("record_every = -9223372036854775807 is out of range"));
+  CHECK_THAT(input_error([&] {
+               protocol::parse_protocol(
+                   "[test]\nname = \"t\"\n[[stage]]\nkind = \"pressure_path\"\nto_Pa = [1e5, \"\", 2e5]\n", "t.toml");
+             }),
+             Contains("to_Pa"));
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const protocol::Protocol far =
       protocol::parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");

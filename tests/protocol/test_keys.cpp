@@ -161,7 +161,7 @@ const toml::node* found_in(const toml::table& resolved, const keys::Key& key) {
 
 TEST_CASE("every key of the table is read, and each with the default that it states") {
   const protocol::Protocol read = protocol::parse_protocol(every_table, "t.toml");
-  CHECK(read.stages.size() == 12);
+  CHECK(read.stages.size() == 14);
   std::set<std::string> names;
   const auto resolved = toml::parse(read.resolved);
   for (const keys::Key& key : protocol::protocol_keys()) {

@@ -118,7 +118,7 @@ class Reader {
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
     items.clear();
-    if (fields::left_out_where_empty<Item> && !file_.has(group_ + "/" + group + "/" + first.name)) return;
+    if (fields::left_out_where_empty<Item> && !file_.has(group_ + "/" + group)) return;
     items.assign(rows_of(group, first), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
