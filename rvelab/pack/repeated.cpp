@@ -1,11 +1,48 @@
 #include "rvelab/pack/repeated.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <utility>
 
 #include "rvelab/error.hpp"
 
 namespace rvelab::pack {
+
+namespace {
+
+/// Place of a copy of the cell among all.
+std::int32_t copy_index(const int (&place)[3], const Image& counts) {
+  return (place[2] * counts[1] + place[1]) * counts[0] + place[0];
+}
+
+/// Pairs of grains of a cell of n, in each of its copies; `turn`: for j as i and i as j.
+template <class Item, class Turn>
+std::vector<Item> repeated_pairs(const std::vector<Item>& items, const Image& counts, std::int32_t n,
+                                 const Turn& turn) {
+  std::vector<Item> all;
+  for (int z = 0; z < counts[2]; ++z)
+    for (int y = 0; y < counts[1]; ++y)
+      for (int x = 0; x < counts[0]; ++x)
+        for (const Item& item : items) {
+          int place[3] = {x + item.image[0], y + item.image[1], z + item.image[2]};
+          Item copy = item;
+          for (std::size_t k = 0; k < 3; ++k) {
+            copy.image[k] = place[k] >= 0 ? place[k] / counts[k] : -((counts[k] - 1 - place[k]) / counts[k]);
+            place[k] -= copy.image[k] * counts[k];
+          }
+          copy.i = copy_index({x, y, z}, counts) * n + item.i;
+          copy.j = copy_index(place, counts) * n + item.j;
+          if (copy.i > copy.j) {
+            std::swap(copy.i, copy.j);
+            for (int& m : copy.image) m = -m;
+            turn(copy);
+          }
+          all.push_back(copy);
+        }
+  std::sort(all.begin(), all.end(), [](const Item& a, const Item& b) { return pair_of(a) < pair_of(b); });
+  return all;
+}
+
+}  // namespace
 
 Specimen repeated(const Specimen& one, const Image& times) {
   const int d = one.cell.dimension;
@@ -20,12 +57,11 @@ Specimen repeated(const Specimen& one, const Image& times) {
   const int nz = d == 3 ? times[2] : 1;
   for (int k = 0; k < d; ++k) all.cell.lattice.col(k) *= times[k];
   const auto n = std::int32_t(one.grains.size());
-  const auto copy_index = [&](int x, int y, int z) { return (z * times[1] + y) * times[0] + x; };
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < times[1]; ++y)
       for (int x = 0; x < times[0]; ++x)
         for (std::int32_t g = 0; g < n; ++g) {
-          all.grains.id.push_back(std::int64_t(copy_index(x, y, z)) * n + g);
+          all.grains.id.push_back(std::int64_t(copy_index({x, y, z}, {times[0], times[1], nz})) * n + g);
           all.grains.radius.push_back(one.grains.radius[g]);
           all.grains.material.push_back(one.grains.material[g]);
           all.grains.position.push_back(one.grains.position[g] + translation(one.cell, {x, y, z}));
@@ -39,30 +75,17 @@ Specimen repeated(const Specimen& one, const Image& times) {
               all.grains, one.grains);
           all.grains.orientation.push_back(one.grains.orientation[g]);
         }
-  for (int z = 0; z < nz; ++z)
-    for (int y = 0; y < times[1]; ++y)
-      for (int x = 0; x < times[0]; ++x)
-        for (const Contact& c : one.contacts) {
-          const int counts[3] = {times[0], times[1], nz};
-          int place[3] = {x + c.image[0], y + c.image[1], z + c.image[2]};
-          Contact copy = c;
-          for (int k = 0; k < 3; ++k) {
-            copy.image[k] = place[k] >= 0 ? place[k] / counts[k] : -((counts[k] - 1 - place[k]) / counts[k]);
-            place[k] -= copy.image[k] * counts[k];
-          }
-          copy.i = copy_index(x, y, z) * n + c.i;
-          copy.j = copy_index(place[0], place[1], place[2]) * n + c.j;
-          if (copy.i > copy.j) {
-            std::swap(copy.i, copy.j);
-            for (int& m : copy.image) m = -m;
-            copy.rolling_moment = -copy.rolling_moment;
-            // 2D keeps the component along t, which turns round with the normal.
-            if (d == 3) copy.tangential_force = -copy.tangential_force;
-          }
-          all.contacts.push_back(copy);
-        }
-  std::sort(all.contacts.begin(), all.contacts.end(), [](const Contact& a, const Contact& b) {
-    return std::tie(a.i, a.j, a.image) < std::tie(b.i, b.j, b.image);
+  const auto turn_contact = [&](Contact& c) {
+    c.rolling_moment = -c.rolling_moment;
+    // 2D keeps the component along t, which turns round with the normal.
+    if (d == 3) c.tangential_force = -c.tangential_force;
+  };
+  all.contacts = repeated_pairs(one.contacts, {times[0], times[1], nz}, n, turn_contact);
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    static_cast<ListOf<Law>&>(all).items =
+        repeated_pairs(static_cast<const ListOf<Law>&>(one).items, {times[0], times[1], nz}, n,
+                       [&](Interaction<Law>& item) { turn_round<Law>(item, d); });
   });
   return all;
 }

@@ -5,7 +5,8 @@
 
 namespace rvelab::pack {
 
-/// A periodic specimen repeated along its cell vectors, contacts with their history copied. InputError: a count
+/// A periodic specimen repeated along its cell vectors, contacts and interactions copied with what they keep.
+/// InputError: a count
 /// below 1.
 Specimen repeated(const Specimen& specimen, const Image& times);
 

@@ -359,6 +359,8 @@ class Relations {
   }
 
   void check_interactions() const {
+    if (s.water.empty() && !static_cast<const ListOf<CapillaryBridge>&>(s).items.empty())
+      refuse("bridges without water; allowed: with one row of water, which says what they hold");
     if (s.water.size() > 1)
       refuse("water has " + std::to_string(s.water.size()) + " rows; allowed: none, or one for all grains");
     for (const Water& water : s.water)

@@ -5,6 +5,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
+#include "rvelab/pack/repeated.hpp"
 #include "tests/interaction/bonded.hpp"
 
 using namespace rvelab;
@@ -180,6 +181,19 @@ TEST_CASE("bonds follow grains through reduced lattices and wrapped cells", "[bo
     }
     CHECK(intact > 0);
     CHECK(intact < count);
+  }
+}
+
+TEST_CASE("a repeated cell has the bonds of each copy", "[bond]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    Rve one = cemented_packing(shape, 1e30);
+    one.apply(gradient(-1e-4, 2e-4, 0, 1e-4), 0);
+    const Rve all(pack::repeated(one.specimen(), {2, 3, shape == Shape::disc ? 1 : 2}));
+    CHECK(bonds_of(all).size() == bonds_of(one).size() * (all.size() / one.size()));
+    CHECK(largest(all.contact_stress() - one.contact_stress()) < 1e-10 * largest(one.contact_stress()));
+    const double copies = double(all.size() / one.size());
+    CHECK(elastic_energy(all.network()) == Approx(copies * elastic_energy(one.network())).epsilon(1e-10));
   }
 }
 

@@ -187,6 +187,9 @@ TEST_CASE("flooding takes the bridges away, and what water cannot be is refused"
   rve.remove_water();
   CHECK(bridges(rve) == 0);
   CHECK(rve.water() == nullptr);
+  Specimen without = pair_at(Shape::sphere, -1e-7, by_suction(2e3)).specimen();
+  without.water.clear();
+  CHECK_THROWS_WITH(Rve(without), Catch::Contains("bridges without water"));
   Water both = by_suction(1e3);
   both.volume_ratio = 0.01;
   CHECK_THROWS_WITH(rve.set_water(both), Catch::Contains("allowed: one of them above 0"));
