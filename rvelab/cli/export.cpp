@@ -46,19 +46,34 @@ std::vector<std::string> files_to_write(const ExportArguments& arguments) {
   return {output};
 }
 
+/// Interactions that a format does not hold, if there are any.
+void tell_what_is_left_out(const Specimen& specimen, Listing& listing) {
+  std::string kinds;
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    if (static_cast<const ListOf<Law>&>(specimen).items.empty()) return;
+    kinds += (kinds.empty() ? "" : ", ") + std::string(Law::name);
+  });
+  if (!kinds.empty()) listing.add("left_out", kinds + ": only xdmf and specimen files hold them");
+}
+
 /// Writes the files of one format, and adds to the listing what the user may want to know of them.
 void write_export(const ExportArguments& arguments, Listing& listing) {
   if (arguments.format == "csv") {
-    const io::CsvExport files =
-        io::export_csv(io::read_states(arguments.file).back().specimen, stem_of(arguments.output));
+    const Specimen specimen = io::read_states(arguments.file).back().specimen;
+    const io::CsvExport files = io::export_csv(specimen, stem_of(arguments.output));
+    tell_what_is_left_out(specimen, listing);
     listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
                                    " --material " + files.material + " -o S.h5");
   } else if (arguments.format == "lammps-data") {
-    io::export_lammps_data(state_of(io::read_states(arguments.file).back()), arguments.output);
+    const io::ExportState state = state_of(io::read_states(arguments.file).back());
+    io::export_lammps_data(state, arguments.output);
+    tell_what_is_left_out(state.specimen, listing);
   } else {
     const auto states = all_states(arguments.file);
     listing.add("states", states.size());
     (arguments.format == "xdmf" ? io::export_xdmf : io::export_lammps_dump)(states, arguments.output);
+    if (arguments.format != "xdmf") tell_what_is_left_out(states.back().specimen, listing);
   }
 }
 

@@ -53,6 +53,25 @@ TEST_CASE("a specimen exported as CSV and imported again as the export says is t
   }
 }
 
+TEST_CASE("a cemented test says how many bonds there are, shows them in ParaView, and which files leave them out") {
+  const Workplace here;
+  REQUIRE(here.run("pack pack_dense -o S.h5 --set pack.number=60").code == 0);
+  const Outcome ran = here.run("run biaxial_cemented --specimen S.h5 -o C.h5 --set stage.compression.to_strain=0.002");
+  INFO(ran.errors);
+  REQUIRE(ran.code == 0);
+  const auto seen = nlohmann::json::parse(here.run("inspect C.h5 --json").output);
+  CHECK(seen["bonds"] > 60);
+  const auto exported = [&](const std::string& format) {
+    return nlohmann::json::parse(here.run("export C.h5 --format " + format + " -o " + format + " --json").output);
+  };
+  for (const char* format : {"csv", "lammps", "lammps-data"})
+    CHECK(exported(format)["left_out"] == "bonds: only xdmf and specimen files hold them");
+  CHECK(!exported("xdmf").contains("left_out"));
+  const std::string text = bytes_of(here / "xdmf");
+  CHECK(text.find("Grid Name=\"bonds\"") != std::string::npos);
+  CHECK(text.find("bonds/broken") != std::string::npos);
+}
+
 TEST_CASE("an export never replaces the file that it is made from, and needs a folder") {
   const Workplace here;
   here.import_packing("dense_p20");
