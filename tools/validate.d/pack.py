@@ -97,7 +97,7 @@ def judge(name, target, pressure, specimens, processor):
 def main():
     program = os.path.realpath(sys.argv[1])
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 20
-    threads = int(os.environ.get("RVELAB_JOBS", os.cpu_count()))
+    threads = int(os.environ.get("RVELAB_JOBS") or os.cpu_count())
     print(f"{threads} threads; times are of one specimen on one thread, mean (most); the load of the machine is in wall time")
     print(
         "| specimens | void ratio | seeds | largest error | stress error, % of p0 | unbalanced | Z | Fa rms sqrt(Nc) | "
