@@ -50,7 +50,8 @@ class Wheel(unittest.TestCase):
             else:
                 with zipfile.ZipFile(made[0]) as wheel:
                     wheel.extractall(site)
-                (site / "rvelab/native/bin/rvelab").chmod(0o755)
+                for program in (site / "rvelab/native/bin").iterdir():
+                    program.chmod(0o755)
             (place / "work").mkdir()
             (place / "work/script.py").write_text(SCRIPT)
             printed = run(sys.executable, "-B", "-W", "ignore", place / "work/script.py", site, PYTHONPATH=str(site))
