@@ -326,7 +326,7 @@ int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info);
 #define RVELAB_OF_CELL 0 /* one row */
 #define RVELAB_OF_GRAINS 1
 #define RVELAB_OF_CONTACTS 2
-#define RVELAB_OF_INTERACTIONS 3 /* since 1.3: bonds, those that broke too; the name says of which kind, "bonds/radius_m" */
+#define RVELAB_OF_INTERACTIONS 3 /* since 1.3: bonds and bridges; the name says which, "bonds/radius_m" */
 
 #define RVELAB_DOUBLE 0
 #define RVELAB_INT64 1

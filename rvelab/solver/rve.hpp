@@ -123,8 +123,8 @@ class Rve {
   /// InputError, and the RVE is as it was, if a grain is none of it, a pair stands twice or a number is not allowed.
   Interactions interactions() const;
   void set_interactions(const Interactions& interactions);
-  /// Water between the grains: pairs that touch, now or later, get a bridge; those that are there become bridges of this
-  /// water. remove_water: all go. InputError as set_interactions. water() is null without any.
+  /// Water between the grains: pairs that touch, now or later, get a bridge; those that are there become bridges of
+  /// this water. remove_water: all go. InputError as set_interactions. water() is null without any.
   void set_water(const Water& water);
   void remove_water();
   const Water* water() const;
