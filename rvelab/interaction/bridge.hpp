@@ -11,12 +11,17 @@
 // give no moment.
 #pragma once
 
-#include "rvelab/interaction/law.hpp"
+#include "rvelab/interaction/water.hpp"
 
 namespace rvelab {
 
 struct CapillaryBridge {
   static constexpr const char* name = "bridges";
+  static constexpr Family family = Family::water;
+  using Settings = Water;
+  static constexpr const char* settings_name = "water";
+  static constexpr const auto& settings_fields = water_fields;
+  static constexpr RemovalKey removal{"flooded", "the pores fill: all bridges go"};
   static constexpr int terms = 16;
   static constexpr InteractionField fields[] = {
       {"present", "1", {0, 1}},                  // 0: the grains are near, without a bridge
@@ -88,8 +93,27 @@ struct CapillaryBridge {
     return thickness > 0 ? plane_pull_at<double>(column, gap) : pull_at<double>(column, gap);
   }
 
+  static constexpr TargetKey target{"saturation",
+                                    "1",
+                                    {0, 0.3, true, false},
+                                    "instead: volume of the bridges over that of the pores as the stage makes them; "
+                                    "of equal volume_ratio between spheres, of one suction between discs"};
+  /// Water of which the bridges of these pairs fill that part of the pores (m^3); nullptr, or why there is none.
+  static const char* settings_for(double saturation, double pore_volume, const GrainPair* pairs, long count,
+                                  Water& water);
+
+  static const char* misfit(const Water& water, const SpecimenKind& specimen) {
+    if ((water.suction > 0) == (water.volume_ratio > 0)) return "suction_Pa or volume_ratio above 0, one of them";
+    return specimen.dimension == 2 && water.volume_ratio > 0
+               ? "suction_Pa between discs, whose bridges it gives in closed form"
+               : nullptr;
+  }
+  static double reach(const Water&) { return 0; }
+  /// A pair that touches is wetted; a bridge that is there becomes one of this water.
+  static void prepare(const Water& water, const GrainPair& pair, double* columns);
+
   template <class Columns>
-  static bool acts(const Columns& column) {
+  static bool acts(const Columns& column, double /*gap*/) {
     return column(present) != 0;
   }
   /// A specimen keeps those that are there; where grains are near is found anew.
@@ -99,14 +123,14 @@ struct CapillaryBridge {
   }
   template <class Columns>
   static InteractionStiffness stiffness(const Columns& column, double gap, double thickness) {
-    if (!acts(column) || gap < 0) return {};
+    if (!acts(column, gap) || gap < 0) return {};
     return {-pull_of(column, gap, thickness).slope, 0, 0, 0};
   }
   static constexpr bool has_energy = true;  ///< by itself: no springs
   /// Over that of the broken bridge, J: what pulling it to rupture takes, negative.
   template <class Columns>
   static double energy(const Columns& column, double gap, double thickness) {
-    if (!acts(column)) return 0;
+    if (!acts(column, gap)) return 0;
     const double s = gap > 0 ? gap : 0, last = column(rupture_gap);
     // With gap = s_c (1 - t^2) the integrand is smooth: Simpson's rule over t.
     constexpr int parts = 64;

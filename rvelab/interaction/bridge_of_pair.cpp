@@ -1,6 +1,7 @@
 #include "rvelab/interaction/bridge_of_pair.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rvelab/interaction/bridge.hpp"
 #include "rvelab/interaction/capillary.hpp"
@@ -27,10 +28,12 @@ void set(const BridgeSeries& series, double* columns) {
 
 }  // namespace
 
-void make_bridge(const Water& water, double ri, double rj, double thickness, double* columns) {
+void CapillaryBridge::prepare(const Water& water, const GrainPair& pair, double* columns) {
   using B = CapillaryBridge;
+  const double there = pair.gap < 0 ? 1 : columns[B::present];
   std::fill(columns, columns + interaction_columns<B>(), 0.0);
-  const double theta = angle_of(water);
+  columns[B::present] = there;
+  const double theta = angle_of(water), ri = pair.radius_i, rj = pair.radius_j, thickness = pair.thickness;
   if (thickness > 0) {
     const double rho = water.surface_tension / water.suction, along = 2 * rho * cosine(theta);
     columns[B::rupture_gap] = planar_rupture_gap_of_suction({ri, rj, theta, water.surface_tension}, water.suction);
@@ -55,11 +58,40 @@ void make_bridge(const Water& water, double ri, double rj, double thickness, dou
   set(bridge.pull, columns);
 }
 
-BridgeContent content_of_bridge(const Water& water, double ri, double rj, double thickness, double gap) {
-  const double theta = angle_of(water), s = std::max(gap, 0.0);
-  if (thickness > 0) {
+const char* CapillaryBridge::settings_for(double saturation, double pore_volume, const GrainPair* pairs, long count,
+                                          Water& water) {
+  const double wanted = saturation * pore_volume;
+  if (count == 0) return "no grains touch, and none has a bridge";
+  water.suction = water.volume_ratio = 0;
+  if (!(pairs[0].thickness > 0)) {
+    double cubes = 0;
+    for (long k = 0; k < count; ++k) cubes += volume_of({0, 0, 0, 1}, pairs[k].radius_i, pairs[k].radius_j);
+    water.volume_ratio = wanted / cubes;
+    return water.volume_ratio <= bridge_range::largest_volume ? nullptr : "bridges would be larger than a tenth of r^3";
+  }
+  const auto held = [&](double suction) {
+    Water at = water;
+    at.suction = suction;
+    double sum = 0;
+    for (long k = 0; k < count; ++k) sum += content_of_bridge(at, pairs[k]).volume;
+    return sum;
+  };
+  double low = 1e-3 * water.surface_tension / pairs[0].radius_i, high = 1e7 * low;  // volume falls with suction
+  if (held(low) < wanted) return "arcs would be a thousand times as wide as grains";
+  if (held(high) > wanted) return "it is too little to bridge these grains";
+  for (int step = 0; step < 100; ++step) {
+    const double middle = std::sqrt(low * high);
+    (held(middle) > wanted ? low : high) = middle;
+  }
+  water.suction = high;
+  return nullptr;
+}
+
+BridgeContent content_of_bridge(const Water& water, const GrainPair& pair) {
+  const double theta = angle_of(water), ri = pair.radius_i, rj = pair.radius_j, s = std::max(pair.gap, 0.0);
+  if (pair.thickness > 0) {
     const BridgeState at = planar_suction_bridge({ri, rj, theta, water.surface_tension}, water.suction, s);
-    return {at.volume * thickness, at.suction};
+    return {at.volume * pair.thickness, at.suction};
   }
   const BridgeState at = water.suction > 0
                              ? suction_bridge(water.suction, ri, rj, theta, water.surface_tension).at(s)

@@ -34,8 +34,21 @@ struct Interaction<Law, std::integer_sequence<int, n...>> : FieldOf<Law, n>... {
   Image image{};
 };
 
+/// What interactions of a law form from, of laws that have such: none or one, for all grains.
 template <class Law>
-struct ListOf {
+struct SettingsOf {};
+template <FormsByItself Law>
+struct SettingsOf<Law> {
+  std::vector<typename Law::Settings> settings;
+};
+template <class>
+struct AllSettingsOf;
+template <class... Laws>
+struct AllSettingsOf<TypeList<Laws...>> : SettingsOf<Laws>... {};
+using InteractionSettings = AllSettingsOf<InteractionLaws>;
+
+template <class Law>
+struct ListOf : SettingsOf<Law> {
   std::vector<Interaction<Law>> items;
 };
 template <class>
@@ -56,10 +69,40 @@ void each_interaction_law(const Visit& visit) {
   each_interaction_law(visit, InteractionLaws{});
 }
 
+/// By the number of its law.
+inline Family family_of(int kind) {
+  Family family{};
+  each_interaction_law([&](auto number, auto law) {
+    if (number == kind) family = decltype(law)::family;
+  });
+  return family;
+}
+
+/// Whether there are any, or something that they form from.
 inline bool has_any(const Interactions& all) {
   bool any = false;
-  each_interaction_law([&](auto, auto law) { any |= !static_cast<const ListOf<decltype(law)>&>(all).items.empty(); });
+  each_interaction_law([&](auto, auto law) {
+    const auto& list = static_cast<const ListOf<decltype(law)>&>(all);
+    any |= !list.items.empty();
+    if constexpr (FormsByItself<decltype(law)>) any |= !list.settings.empty();
+  });
   return any;
+}
+
+template <class Law, class Settings>
+concept FormsFrom = FormsByItself<Law> && std::is_same_v<typename Law::Settings, Settings>;
+template <class Settings, class... Laws>
+constexpr bool is_settings_of_any(TypeList<Laws...>) {
+  return (FormsFrom<Laws, Settings> || ...);
+}
+
+/// Settings of one (InteractionSettings, Interactions) to the other.
+template <class To, class From>
+void copy_settings(const From& from, To& to) {
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    if constexpr (FormsByItself<Law>) static_cast<SettingsOf<Law>&>(to) = static_cast<const SettingsOf<Law>&>(from);
+  });
 }
 
 /// visit(field, value) for each field of an interaction, const or not, in the order of the law.

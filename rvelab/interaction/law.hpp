@@ -1,7 +1,14 @@
 // What the law of an interaction other than a contact declares and is handed. An interaction is a pair of grains on
-// which forces act whether the grains touch or not, such as a bond; it is made in a test, kept with numbers of its own,
-// and ends by its law. A law is one file, like parallel_bond.hpp, and a word in laws.hpp: specimens, files, snapshots,
-// trials, the turning of cells and the step kernels follow from what it declares.
+// which forces act whether the grains touch or not, such as a bond; it is made in a test or forms by itself, is kept
+// with numbers of its own, and ends by its law. A law is one file, like parallel_bond.hpp, and a word in laws.hpp:
+// specimens, files, snapshots, trials, the turning of cells and the step kernels follow from what it declares.
+//
+// Interactions that form by themselves need what they form from, such as water. Their law declares `Settings`: numbers
+// of the specimen, none or one row, with `settings_name` and `settings_fields`; a stage of that name gives them, and
+// takes them away by the key `removal`; where settings may follow from what they make (saturation), that is `target`,
+// and `settings_for` finds them. `misfit` is what is allowed where settings cannot be, else null; `reach` (m) is the
+// gap up to which one may form, 0 where grains must touch; `prepare` makes of settings the columns of a pair that is
+// near, which are zero when it is new.
 //
 // This room knows two grains at a time. No standard library: step kernels include the laws.
 #pragma once
@@ -12,6 +19,9 @@
 #include "rvelab/lanes/vectors.hpp"
 
 namespace rvelab {
+
+/// Among what records count and add up the interactions of a law.
+enum class Family { bonds, water, adhesion };
 
 constexpr Interval any_number{-no_bound, no_bound, true, true};
 
@@ -37,6 +47,46 @@ constexpr int interaction_columns() {
   return columns;
 }
 constexpr int most_interaction_columns = 24;
+
+/// One of the numbers that interactions of a law form from, as a stage reads it and files write it.
+template <class Settings>
+struct SettingsField {
+  const char* name;
+  double Settings::*value;
+  const char* unit;
+  Interval allowed;
+  const char* meaning;
+};
+struct RemovalKey {
+  const char *name, *meaning;
+};
+/// What a law's settings may be given by instead: one number of the specimen, from which they follow.
+struct TargetKey {
+  const char *name, *unit;
+  Interval allowed;
+  const char* meaning;
+};
+template <class Law>
+concept FormsByItself = requires {
+  typename Law::Settings;
+};
+
+/// Two grains that are near.
+struct GrainPair {
+  double radius_i = 0, radius_j = 0;  ///< m
+  double thickness = 0;               ///< m, in the plane, else 0
+  double gap = 0;                     ///< m, negative where they overlap
+  double contact_stiffness = 0;       ///< of their contact (ContactConstants::kn): linear N/m, Hertz N/m^1.5
+};
+template <class Law>
+concept HasTarget = requires {
+  Law::target;
+};
+/// What a law asks of a specimen.
+struct SpecimenKind {
+  int dimension = 3;
+  bool hertz = false;  ///< normal forces of contacts go with overlap^(3/2)
+};
 
 /// Interactions of one kind, padded to a multiple of eight with some between padding grains.
 struct InteractionArrays {

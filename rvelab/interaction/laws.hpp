@@ -3,12 +3,21 @@
 
 #include "rvelab/contact/laws.hpp"
 #include "rvelab/interaction/bridge.hpp"
+#include "rvelab/interaction/contact_bond.hpp"
+#include "rvelab/interaction/dmt.hpp"
+#include "rvelab/interaction/jkr.hpp"
 #include "rvelab/interaction/parallel_bond.hpp"
+#include "rvelab/interaction/softening_bond.hpp"
+#include "rvelab/interaction/surface_bond.hpp"
 
 namespace rvelab {
 
-using InteractionLaws = TypeList<ParallelBond, CapillaryBridge>;
-constexpr int bonds_kind = 0, bridges_kind = 1;
+using InteractionLaws =
+    TypeList<ParallelBond, CapillaryBridge, SurfaceBond, ContactBond, JkrAdhesion, DmtAdhesion, SofteningBond>;
 constexpr int interaction_kinds = count_of(InteractionLaws{});
+template <class... Laws>
+constexpr int forming_laws(TypeList<Laws...>) {
+  return (0 + ... + int(FormsByItself<Laws>));
+}
 
 }  // namespace rvelab

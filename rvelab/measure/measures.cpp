@@ -48,10 +48,10 @@ Matrix3 contact_stress(const Network& network) {
   return in_laboratory(network, sum / network.cell.volume());
 }
 
-Matrix3 interaction_stress(const Network& network, int kind) {
+Matrix3 interaction_stress(const Network& network, Family family) {
   Matrix3 sum = Matrix3::Zero();
   for (const InteractionState& other : network.interactions)
-    if (other.kind == kind) sum -= other.force() * other.branch.transpose();
+    if (family_of(other.kind) == family) sum -= other.force() * other.branch.transpose();
   return in_laboratory(network, sum / network.cell.volume());
 }
 

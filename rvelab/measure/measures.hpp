@@ -18,8 +18,8 @@ namespace rvelab {
 /// measures unbalanced torque.
 Matrix3 contact_stress(const Network& network);
 
-/// Part of it that interactions of one kind bear (of InteractionLaws; bonds 0).
-Matrix3 interaction_stress(const Network& network, int kind);
+/// Part of it that bonds, water or adhesion bear.
+Matrix3 interaction_stress(const Network& network, Family family);
 
 /// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.
 Matrix3 reynolds_stress(const Network& network);

@@ -2,12 +2,14 @@
 // the key stage.kind, reading, running and calibration use. Internal to the room.
 //
 // A new kind is one file stage_NAME.cpp with a class of its settings and a function NAME_kind() that makes one, and its
-// line here.
+// line here. Interactions that form by themselves have one each without a line (stage_forming.cpp).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
+#include "rvelab/interaction/laws.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/protocol.hpp"
 
@@ -56,12 +58,29 @@ using MakeStage = std::unique_ptr<StageKind>();
 
 // Each in stage_NAME.cpp.
 MakeStage isotropic_kind, compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind, path_kind,
-    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind, water_kind;
+    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind;
+/// Of what interactions form from, by the place of their law among those that form by themselves (stage_forming.cpp).
+std::unique_ptr<StageKind> forming_kind(int which);
+template <int which>
+std::unique_ptr<StageKind> forming_kind_of() {
+  return forming_kind(which);
+}
+
+template <std::size_t count, int... which>
+constexpr auto with_forming_kinds(const std::array<MakeStage*, count>& own, std::integer_sequence<int, which...>) {
+  std::array<MakeStage*, count + sizeof...(which)> all{};
+  std::size_t k = 0;
+  for (MakeStage* const make : own) all[k++] = make;
+  ((all[k++] = &forming_kind_of<which>), ...);
+  return all;
+}
 
 /// Every kind, in the order in which keys and messages list them.
-inline constexpr MakeStage* stage_kinds[] = {
-    isotropic_kind,   compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind, path_kind, flow_kind,
-    deformation_kind, envelope_kind,    relax_kind,        probe_kind,         cement_kind,     water_kind};
+inline constexpr auto stage_kinds =
+    with_forming_kinds(std::array<MakeStage*, 12>{isotropic_kind, compression_kind, simple_shear_kind,
+                                                  pressure_path_kind, deviatoric_kind, path_kind, flow_kind,
+                                                  deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind},
+                       std::make_integer_sequence<int, forming_laws(InteractionLaws{})>());
 
 /// A stage of the kind of this name. std::logic_error if there is none.
 std::unique_ptr<StageKind> stage_of_kind(const std::string& name);

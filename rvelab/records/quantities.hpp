@@ -185,52 +185,55 @@ struct StrongDeviator {
   static double measure(const MeasuredState& state) { return state.networks().strong.deviator_share; }
 };
 
-// Bonds (rvelab/interaction/parallel_bond.hpp).
+// Bonds (rvelab/interaction: beam.hpp, contact_bond.hpp).
 
-/// Sum of what `of` makes of the columns of each bond.
+/// Sum of what `of(Law{}, columns)` makes of each bond.
 template <class Of>
 double sum_over_bonds(const MeasuredState& state, const Of& of) {
-  double sum = 0, columns[interaction_columns<ParallelBond>()];
+  double sum = 0;
   const Interactions all = state.rve.interactions();
-  for (const auto& bond : static_cast<const ListOf<ParallelBond>&>(all).items) {
-    put_columns<ParallelBond>(bond, columns);
-    sum += of(columns);
-  }
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    if constexpr (Law::family == Family::bonds) {
+      double columns[interaction_columns<Law>()];
+      for (const auto& bond : static_cast<const ListOf<Law>&>(all).items) {
+        put_columns<Law>(bond, columns);
+        sum += of(law, columns);
+      }
+    }
+  });
   return sum;
+}
+inline double bonds_with(const MeasuredState& state, double broken) {
+  return sum_over_bonds(state, [=](auto law, const double* c) { return c[decltype(law)::broken] == broken ? 1.0 : 0.0; });
 }
 
 struct Bonds {
   double bonds = 0;
   static constexpr QuantityText text{"bonds", "1", "intact ones"};
   static constexpr auto member = &Bonds::bonds;
-  static double measure(const MeasuredState& state) {
-    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 0 ? 1.0 : 0.0; });
-  }
+  static double measure(const MeasuredState& state) { return bonds_with(state, 0); }
 };
 
 struct BondsBrokenInTension {
   double bonds_broken_in_tension = 0;
   static constexpr QuantityText text{"bonds_broken_in_tension", "1", "since they were made"};
   static constexpr auto member = &BondsBrokenInTension::bonds_broken_in_tension;
-  static double measure(const MeasuredState& state) {
-    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 1 ? 1.0 : 0.0; });
-  }
+  static double measure(const MeasuredState& state) { return bonds_with(state, 1); }
 };
 
 struct BondsBrokenInShear {
   double bonds_broken_in_shear = 0;
   static constexpr QuantityText text{"bonds_broken_in_shear", "1", "since they were made"};
   static constexpr auto member = &BondsBrokenInShear::bonds_broken_in_shear;
-  static double measure(const MeasuredState& state) {
-    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::broken] == 2 ? 1.0 : 0.0; });
-  }
+  static double measure(const MeasuredState& state) { return bonds_with(state, 2); }
 };
 
 struct BondStress {
   Matrix3 bond_stress = Matrix3::Zero();
   static constexpr QuantityText text{"bond_stress_Pa", "Pa", "part of contact_stress_Pa that bonds bear"};
   static constexpr auto member = &BondStress::bond_stress;
-  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bonds_kind); }
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, Family::bonds); }
 };
 
 struct BondReleasedEnergy {
@@ -238,7 +241,7 @@ struct BondReleasedEnergy {
   static constexpr QuantityText text{"bond_released_energy_J", "J", "elastic energy that bonds gave up as they broke"};
   static constexpr auto member = &BondReleasedEnergy::bond_released_energy;
   static double measure(const MeasuredState& state) {
-    return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::released]; });
+    return sum_over_bonds(state, [](auto law, const double* c) { return c[decltype(law)::released]; });
   }
 };
 
@@ -248,7 +251,7 @@ struct Bridges {
   double bridges = 0;
   static constexpr QuantityText text{"bridges", "1", "of water between two grains"};
   static constexpr auto member = &Bridges::bridges;
-  static double measure(const MeasuredState& state) { return double(state.bridges()); }
+  static double measure(const MeasuredState& state) { return double(state.acting(Family::water)); }
 };
 
 struct Saturation {
@@ -262,7 +265,23 @@ struct BridgeStress {
   Matrix3 bridge_stress = Matrix3::Zero();
   static constexpr QuantityText text{"bridge_stress_Pa", "Pa", "part of contact_stress_Pa that bridges bear"};
   static constexpr auto member = &BridgeStress::bridge_stress;
-  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bridges_kind); }
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, Family::water); }
+};
+
+// Adhesion (rvelab/interaction: jkr.hpp, dmt.hpp).
+
+struct AdhesivePairs {
+  double adhesive_pairs = 0;
+  static constexpr QuantityText text{"adhesive_pairs", "1", "of grains that attract one another"};
+  static constexpr auto member = &AdhesivePairs::adhesive_pairs;
+  static double measure(const MeasuredState& state) { return double(state.acting(Family::adhesion)); }
+};
+
+struct AdhesionStress {
+  Matrix3 adhesion_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"adhesion_stress_Pa", "Pa", "part of contact_stress_Pa that adhesion bears"};
+  static constexpr auto member = &AdhesionStress::adhesion_stress;
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, Family::adhesion); }
 };
 
 /// New ones come last: journals name what was asked for by the places here.
@@ -296,7 +315,9 @@ using Quantities = QuantityTable<  //
     BondReleasedEnergy,            //
     Bridges,                       //
     Saturation,                    //
-    BridgeStress                   //
+    BridgeStress,                  //
+    AdhesivePairs,                 //
+    AdhesionStress                 //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

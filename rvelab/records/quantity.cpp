@@ -6,19 +6,24 @@
 
 namespace rvelab::records {
 
-std::size_t MeasuredState::bridges() const {
+std::size_t MeasuredState::acting(Family family) const {
   return std::size_t(std::count_if(network.interactions.begin(), network.interactions.end(),
-                                   [](const InteractionState& other) { return other.kind == bridges_kind; }));
+                                   [=](const InteractionState& other) { return family_of(other.kind) == family; }));
 }
 
 double MeasuredState::water_volume() const {
+  const std::vector<Water>& water =
+      static_cast<const SettingsOf<CapillaryBridge>&>(rve.interaction_settings()).settings;
+  GrainPair pair;
+  pair.thickness = network.dimension() == 2 ? network.cell.lattice(2, 2) : 0;
   double sum = 0;
-  for (const InteractionState& other : network.interactions)
-    if (other.kind == bridges_kind)
-      sum += content_of_bridge(*rve.water(), network.grains[std::size_t(other.i)].radius,
-                               network.grains[std::size_t(other.j)].radius,
-                               network.dimension() == 2 ? network.cell.lattice(2, 2) : 0, -other.overlap)
-                 .volume;
+  for (const InteractionState& other : network.interactions) {
+    if (family_of(other.kind) != Family::water) continue;
+    pair.radius_i = network.grains[std::size_t(other.i)].radius;
+    pair.radius_j = network.grains[std::size_t(other.j)].radius;
+    pair.gap = -other.overlap;
+    sum += content_of_bridge(water.front(), pair).volume;
+  }
   return sum;
 }
 

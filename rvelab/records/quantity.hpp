@@ -31,8 +31,8 @@ class MeasuredState {
     if (!relation_) relation_ = stress_force_fabric(network);
     return *relation_;
   }
-  std::size_t bridges() const;
-  double water_volume() const;  ///< of the bridges, m^3
+  std::size_t acting(Family family) const;  ///< interactions that act
+  double water_volume() const;              ///< of the bridges, m^3
   const ForceNetworks& networks() const {
     if (!networks_) networks_ = force_networks(network);
     return *networks_;

@@ -6,7 +6,6 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/interaction/bridge_of_pair.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/at_rate/at_rate.hpp"
@@ -248,49 +247,23 @@ void Rve::set_materials(const std::vector<Material>& materials) {
 Interactions Rve::interactions() const {
   // A large cell keeps its grains in an order of its own.
   const Assembly& assembly = state_->assembly();
-  return assembly.state.memory_order.empty() ? interactions_of(assembly.pairs) : Interactions(specimen());
+  if (!assembly.state.memory_order.empty()) return Interactions(specimen());
+  Interactions all = interactions_of(assembly.pairs);
+  copy_settings(state_->model().interaction_settings, all);
+  return all;
 }
 
 void Rve::set_interactions(const Interactions& interactions) {
   apply_deferred_strain(prepared_for_change(*state_));
   Specimen changed = specimen();
   static_cast<Interactions&>(changed) = interactions;
+  check_specimen(changed);  // that they can form, before they are made
+  prepare_interactions(changed);
   changed.state.masses = {};  // they go with the stiffness
   open_instead(changed);
 }
 
-void Rve::set_water(const Water& water) {
-  apply_deferred_strain(prepared_for_change(*state_));
-  Specimen changed = specimen();
-  const bool plane = changed.cell.dimension == 2;
-  changed.water = {water};
-  // Bridges that are there stay, as those of the new water.
-  auto& items = static_cast<ListOf<CapillaryBridge>&>(changed).items;
-  auto bridges = std::move(items);
-  items.clear();
-  check_specimen(changed);  // that this water can be, before bridges are made of it
-  double columns[interaction_columns<CapillaryBridge>()];
-  for (auto& bridge : bridges) {
-    make_bridge(water, changed.grains.radius[std::size_t(bridge.i)], changed.grains.radius[std::size_t(bridge.j)],
-                plane ? changed.cell.lattice(2, 2) : 0, columns);
-    columns[CapillaryBridge::present] = 1;
-    take_columns<CapillaryBridge>(columns, bridge);
-  }
-  items = std::move(bridges);
-  changed.state.masses = {};
-  open_instead(changed);
-}
-
-void Rve::remove_water() {
-  apply_deferred_strain(prepared_for_change(*state_));
-  Specimen changed = specimen();
-  changed.water.clear();
-  static_cast<ListOf<CapillaryBridge>&>(changed).items.clear();
-  changed.state.masses = {};
-  open_instead(changed);
-}
-
-const Water* Rve::water() const { return state_->model().water.empty() ? nullptr : &state_->model().water.front(); }
+const InteractionSettings& Rve::interaction_settings() const { return state_->model().interaction_settings; }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
   State& state = prepared_for_change(*state_);

@@ -123,11 +123,9 @@ class Rve {
   /// InputError, and the RVE is as it was, if a grain is none of it, a pair stands twice or a number is not allowed.
   Interactions interactions() const;
   void set_interactions(const Interactions& interactions);
-  /// Water between the grains: pairs that touch, now or later, get a bridge; those that are there become bridges of
-  /// this water. remove_water: all go. InputError as set_interactions. water() is null without any.
-  void set_water(const Water& water);
-  void remove_water();
-  const Water* water() const;
+  /// What those form from that form by themselves (water). If set_interactions brings others, those that are there
+  /// become what these make of them; without any, they go.
+  const InteractionSettings& interaction_settings() const;
   /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), at a rate: one of each for every grain, in the
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
   /// not size() or an entry is not finite; the RVE is then as it was.

@@ -10,7 +10,6 @@
 #include "rvelab/grains/own_columns.hpp"
 #include "rvelab/grains/shape.hpp"
 #include "rvelab/interaction/interaction.hpp"
-#include "rvelab/interaction/water.hpp"
 #include "rvelab/solver/assembly/list_state.hpp"
 #include "rvelab/solver/loading/loading_state.hpp"
 #include "rvelab/solver/quasi_static/control_state.hpp"
@@ -75,7 +74,7 @@ struct SolverState {
   EnergyTerms energy_balance;
 };
 
-/// Interactions other than contacts (bonds) stand before its members.
+/// Interactions other than contacts (bonds), and what they form from (water), stand before its members.
 struct Specimen : Interactions {
   Shape shape = round_shape(3);
   Cell cell;
@@ -85,7 +84,6 @@ struct Specimen : Interactions {
   SolverOptions solver;
   Grains grains;
   std::vector<Contact> contacts;
-  std::vector<Water> water;  ///< none or one: then pairs that touch get bridges
   SolverState state;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -359,26 +360,39 @@ class Relations {
   }
 
   void check_interactions() const {
-    if (s.water.empty() && !static_cast<const ListOf<CapillaryBridge>&>(s).items.empty())
-      refuse("bridges without water; allowed: with one row of water, which says what they hold");
-    if (s.water.size() > 1)
-      refuse("water has " + std::to_string(s.water.size()) + " rows; allowed: none, or one for all grains");
-    for (const Water& water : s.water)
-      if ((water.suction > 0) == (water.volume_ratio > 0))
-        refuse("water/suction_Pa = " + in_words(water.suction) +
-               ", water/volume_ratio = " + in_words(water.volume_ratio) + "; allowed: one of them above 0");
-    if (!s.water.empty() && s.cell.dimension == 2 && s.water.front().volume_ratio > 0)
-      refuse("water/volume_ratio = " + in_words(s.water.front().volume_ratio) +
-             " between discs; allowed: suction_Pa, which gives their bridges in closed form");
-    if (!s.water.empty() && !is_round(s.shape))
-      refuse("water between grains that are not round; allowed: between discs or spheres");
     each_interaction_law([&](auto, auto law) {
       using Law = decltype(law);
+      if constexpr (FormsByItself<Law>) check_settings<Law>();
       const auto& items = static_cast<const ListOf<Law>&>(s).items;
       if (!items.empty() && !is_round(s.shape))
         refuse(std::string(Law::name) + " of grains that are not round; allowed: between discs or spheres");
       check_pairs(Law::name, "pair", items);
     });
+  }
+
+  /// What interactions of a law form from.
+  template <class Law>
+  void check_settings() const {
+    const auto& rows = static_cast<const SettingsOf<Law>&>(s).settings;
+    const std::string name = Law::settings_name;
+    if (rows.empty() && !static_cast<const ListOf<Law>&>(s).items.empty())
+      refuse(std::string(Law::name) + " without " + name + "; allowed: with one row of " + name +
+             ", which says what they form from");
+    if (rows.size() > 1)
+      refuse(name + " has " + std::to_string(rows.size()) + " rows; allowed: none, or one for all grains");
+    if (rows.empty()) return;
+    if (!is_round(s.shape)) refuse(name + " between grains that are not round; allowed: between discs or spheres");
+    const bool hertz = with_law(s.contact.law, [](auto law) { return decltype(law)::Force::needs_root_overlap; });
+    const double mean = std::accumulate(s.grains.radius.begin(), s.grains.radius.end(), 0.0) / double(s.grains.size());
+    if (const double reach = Law::reach(rows.front()); reach > mean)
+      refuse(name + " makes grains act on one another up to a gap of " + in_words(reach) +
+             " m; allowed: up to their mean radius, " + in_words(mean) + " m");
+    const char* misfit = Law::misfit(rows.front(), {s.cell.dimension, hertz});
+    if (misfit == nullptr) return;
+    std::string values;
+    for (const auto& field : Law::settings_fields)
+      values += (values.empty() ? "" : ", ") + name + "/" + field.name + " = " + in_words(rows.front().*field.value);
+    refuse(values + "; allowed: " + misfit);
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong

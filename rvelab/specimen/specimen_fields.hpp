@@ -178,20 +178,43 @@ inline constexpr auto members_of<Interaction<Law, std::integer_sequence<int, n..
 template <class Law>
 inline constexpr bool left_out_where_empty<Interaction<Law>> = true;
 
-template <>
-inline constexpr auto members_of<Water> = std::tuple{
-    Field{"surface_tension_N_m", &Water::surface_tension, "N/m"}.within(positive_number),
-    Field{"contact_angle_deg", &Water::contact_angle_deg, "degrees"}.within({0, 45}),
-    Field{"suction_Pa", &Water::suction, "Pa"}.within(number_from_zero),
-    Field{"volume_ratio", &Water::volume_ratio, "1"}.within({0, 0.1}),
-};
-template <>
-inline constexpr bool left_out_where_empty<Water> = true;
-
+/// What interactions of a law form from, as it declares it.
+template <FormsByItself Law>
+constexpr auto fields_of_settings() {
+  using Settings = typename Law::Settings;
+  return []<std::size_t... k>(std::index_sequence<k...>) {
+    return std::tuple{Field<Settings, double>{Law::settings_fields[k].name, Law::settings_fields[k].value,
+                                              Law::settings_fields[k].unit}
+                          .within(Law::settings_fields[k].allowed)...};
+  }
+  (std::make_index_sequence<std::size(Law::settings_fields)>());
+}
+template <class Law>
+constexpr auto settings_table() {
+  if constexpr (FormsByItself<Law>)
+    return std::tuple{Table<Specimen, typename Law::Settings>{Law::settings_name, &SettingsOf<Law>::settings}};
+  else
+    return std::tuple{};
+}
 template <class... Laws>
 constexpr auto interaction_tables(TypeList<Laws...>) {
-  return std::tuple{Table<Specimen, Interaction<Laws>>{Laws::name, &ListOf<Laws>::items}...};
+  return std::tuple_cat(std::tuple{Table<Specimen, Interaction<Laws>>{Laws::name, &ListOf<Laws>::items}...},
+                        settings_table<Laws>()...);
 }
+template <class Settings, class First, class... Rest>
+constexpr auto fields_of_settings_in(TypeList<First, Rest...>) {
+  if constexpr (FormsFrom<First, Settings>)
+    return fields_of_settings<First>();
+  else
+    return fields_of_settings_in<Settings>(TypeList<Rest...>{});
+}
+/// Settings of any law of the list.
+template <class Settings>
+concept IsSettings = is_settings_of_any<Settings>(InteractionLaws{});
+template <IsSettings Settings>
+inline constexpr auto members_of<Settings> = fields_of_settings_in<Settings>(InteractionLaws{});
+template <IsSettings Settings>
+inline constexpr bool left_out_where_empty<Settings> = true;
 
 template <>
 inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"shape", &Specimen::shape, "-"},  //
@@ -199,8 +222,7 @@ inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"sh
                                                                        Part{"grains", &Specimen::grains},      //
                                                                        Table{"contacts", &Specimen::contacts}},
                                                             interaction_tables(InteractionLaws{}),
-                                                            std::tuple{Table{"water", &Specimen::water},          //
-                                                                       Table{"materials", &Specimen::materials},  //
+                                                            std::tuple{Table{"materials", &Specimen::materials},  //
                                                                        Part{"contact", &Specimen::contact},       //
                                                                        Part{"damping", &Specimen::damping},       //
                                                                        Part{"solver", &Specimen::solver},         //
@@ -208,6 +230,7 @@ inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"sh
 
 /// The lists of interactions are a base of Specimen, one initialiser for all of them.
 template <>
-inline constexpr std::size_t inherited_members<Specimen> = std::size_t(interaction_kinds) - 1;
+inline constexpr std::size_t inherited_members<Specimen> =
+    std::tuple_size_v<decltype(interaction_tables(InteractionLaws{}))> - 1;
 
 }  // namespace rvelab::fields

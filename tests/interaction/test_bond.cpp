@@ -1,242 +1,222 @@
-// Bonds against their published formulas, with numbers worked by hand.
-#include <algorithm>
-#include <cmath>
-#include <vector>
+// Two grains bonded by a surface of their load, or at a point, against the formulas of surface_bond.hpp and
+// contact_bond.hpp: what breaks them, in which step; and cement stages that make them.
+#include "tests/interaction/bonded_pair.hpp"
 
-#include "rvelab/interaction/bond_ageing.hpp"
-#include "tests/catch.hpp"
-#include "tests/specimens.hpp"
+using namespace rvelab;
+using namespace rvelab::test;
+using namespace rvelab::test::bonded;
 
-using namespace rvelab::interaction;
-using rvelab::test::pi;
+namespace {
 
-TEST_CASE("sections: disc pi R^2, pi R^4/4, pi R^4/2; rectangle 2 R t, 2 R^3 t/3", "[interaction]") {
-  const BondSection disc = disc_section(2), plane = rectangle_section(3, 0.5);
-  CHECK(disc.area == Approx(4 * pi).epsilon(1e-15));
-  CHECK(disc.inertia == Approx(4 * pi).epsilon(1e-15));
-  CHECK(disc.polar == Approx(8 * pi).epsilon(1e-15));
-  CHECK(plane.area == Approx(3).epsilon(1e-15));
-  CHECK(plane.inertia == Approx(9).epsilon(1e-15));
-  CHECK(plane.polar == 0);
+constexpr double tensile = 3e3, tan_friction = 0.7, bending_factor = 0.2, twisting_factor = 0.3;
+
+Rve surface_pair(Shape shape) {
+  std::vector<double> columns = beam_columns<SurfaceBond>();
+  columns[SurfaceBond::tensile_strength] = tensile;
+  columns[SurfaceBond::shear_factor] = tan_friction;
+  columns[SurfaceBond::bending_factor] = bending_factor;
+  columns[SurfaceBond::twisting_factor] = twisting_factor;
+  return pair_with<SurfaceBond>(shape, columns);
 }
 
-TEST_CASE("a beam in tension, shear, bending and twist is four springs of kn A, ks A, kn I, ks J", "[interaction]") {
-  const double radius = 0.4e-3, E = 2e9, length = 2.5e-3, ratio = 2.5;
-  const BondSection s = disc_section(radius);
-  const BondStiffness k = bond_stiffness_of_modulus(s, E, length, ratio);
-  CHECK(k.normal == Approx(E * pi * radius * radius / length).epsilon(1e-14));
-  CHECK(k.shear == Approx(E * pi * radius * radius / length / ratio).epsilon(1e-14));
-  CHECK(k.bending == Approx(E * pi * std::pow(radius, 4) / 4 / length).epsilon(1e-14));
-  CHECK(k.twisting == Approx(E * pi * std::pow(radius, 4) / 2 / length / ratio).epsilon(1e-14));
-
-  BondForces f;
-  for (int step = 0; step < 1000; ++step)  // pulled apart, sheared along x, bent about y, twisted
-    advance(f, k, {-1e-10, {2e-10, 0, 0}, {0, 3e-7, 0}, 4e-7});
-  CHECK(f.normal == Approx(-k.normal * 1e-7).epsilon(1e-12));
-  CHECK(f.shear[0] == Approx(-k.shear * 2e-7).epsilon(1e-12));
-  CHECK(f.bending[1] == Approx(-k.bending * 3e-4).epsilon(1e-12));
-  CHECK(f.twist == Approx(-k.twisting * 4e-4).epsilon(1e-12));
-  CHECK(f.shear[1] == 0);
-  const double energy = 0.5 * (k.normal * 1e-14 + k.shear * 4e-14 + k.bending * 9e-8 + k.twisting * 16e-8);
-  CHECK(bond_energy(k, load_of(f)) == Approx(energy).epsilon(1e-12));
-
-  PlanarBondForces flat;
-  const BondStiffness kp = bond_stiffness(rectangle_section(radius, 1), 1e12, 4e11);
-  advance(flat, kp, -1e-7, 2e-7, -3e-4);
-  CHECK(flat.normal == Approx(-1e12 * 2 * radius * 1e-7).epsilon(1e-14));
-  CHECK(flat.shear == Approx(-4e11 * 2 * radius * 2e-7).epsilon(1e-14));
-  CHECK(flat.bending == Approx(1e12 * 2 * std::pow(radius, 3) / 3 * 3e-4).epsilon(1e-14));
-  CHECK(bond_energy(kp, load_of(flat)) ==
-        Approx(0.5 * (1e-7 * -flat.normal + 2e-7 * -flat.shear + 3e-4 * flat.bending)).epsilon(1e-12));
+Rve contact_bonded(Shape shape, double pull, double slip, double friction) {
+  std::vector<double> columns(interaction_columns<ContactBond>());
+  columns[ContactBond::first_gap] = l0 - (ri + rj);
+  columns[ContactBond::normal_stiffness] = kn;
+  columns[ContactBond::shear_stiffness] = ks;
+  columns[ContactBond::tensile_strength] = pull;
+  columns[ContactBond::shear_strength] = slip;
+  columns[ContactBond::friction] = friction;
+  return pair_with<ContactBond>(shape, columns);
 }
 
-TEST_CASE("stress at the rim: -Fn/A + beta |Mb| R/I and |Fs|/A + beta |Mt| R/J", "[interaction]") {
-  // Disc of R = 1: A = pi, I = pi/4, J = pi/2.
-  const BondSection s = disc_section(1);
-  const BondLoad load{-2 * pi, 3 * pi, pi, 0.5 * pi};
-  const RimStress whole = rim_stress(s, load, 1), half = rim_stress(s, load, 0.5);
-  CHECK(whole.tensile == Approx(2 + 4).epsilon(1e-14));
-  CHECK(whole.shear == Approx(3 + 1).epsilon(1e-14));
-  CHECK(half.tensile == Approx(2 + 2).epsilon(1e-14));
-  CHECK(half.shear == Approx(3 + 0.5).epsilon(1e-14));
-  // Rectangle of R = 1, t = 1.5: A = 3, I = 1: M R/I = M.
-  CHECK(rim_stress(rectangle_section(1, 1.5), {6, 0, 5, 0}, 1).tensile == Approx(-2 + 5).epsilon(1e-14));
-  const BondForces vector{-1, {3, 0, 4}, {0, 2, 0}, -7};
-  const BondLoad read = load_of(vector);
-  CHECK(read.shear == Approx(5).epsilon(1e-15));
-  CHECK(read.bending == Approx(2).epsilon(1e-15));
-  CHECK(read.twist == 7);
+/// Whole after `before` steps of `motion`, broken `how` after one more.
+template <class Law>
+void breaks_after(Rve& rve, const Motion& motion, long before, double how) {
+  move(rve, motion, before);
+  CHECK(column_of<Law>(rve, Law::broken) == 0);
+  move(rve, motion, 1);
+  CHECK(column_of<Law>(rve, Law::broken) == how);
+  CHECK(rve.network().interactions.empty());
 }
 
-TEST_CASE("the rim breaks by tension, or by shear at cohesion plus friction", "[interaction]") {
-  const BondSection s = disc_section(1);
-  const RimStrength strength{6, 2, 0.5, 1};
-  // Pure tension at 6 pi; with a moment of pi/4 * 1 one less.
-  CHECK(bond_use(strength, s, {-6 * pi, 0, 0, 0}).share == Approx(1).epsilon(1e-14));
-  CHECK(bond_use(strength, s, {-6 * pi, 0, 0, 0}).by == BondFailure::tension);
-  CHECK(bond_use(strength, s, {-5 * pi, 0, pi / 4, 0}).share == Approx(1).epsilon(1e-14));
-  // Shear: 2 unloaded, 2 + 0.5 * 4 pressed by 4 pi, 2 - 0.5 * 2 pulled by 2 pi.
-  CHECK(bond_use(strength, s, {0, 2 * pi, 0, 0}).share == Approx(1).epsilon(1e-14));
-  CHECK(bond_use(strength, s, {4 * pi, 4 * pi, 0, 0}).share == Approx(1).epsilon(1e-14));
-  CHECK(bond_use(strength, s, {-2 * pi, 1 * pi, 0, 0}).share == Approx(1).epsilon(1e-14));
-  CHECK(bond_use(strength, s, {-2 * pi, 1 * pi, 0, 0}).by == BondFailure::shear);
-  CHECK(bond_use(strength, s, {0, 0, 0, pi}).share == Approx(1).epsilon(1e-14));  // twist: M R/J = 2
-  // Beyond c/tan(phi) in tension any shear breaks it.
-  CHECK(bond_use(strength, s, {-5 * pi, 1e-6, 0, 0}).share > 1e100);
-  // Without friction, the constant strength of 2004.
-  CHECK(bond_use(RimStrength{6, 2, 0, 1}, s, {4 * pi, 2 * pi, 0, 0}).share == Approx(1).epsilon(1e-14));
-  // Pressed alone it holds.
-  CHECK(bond_use(strength, s, {1e3, 0, 0, 0}).by == BondFailure::none);
+/// Grains that roll on each other: slip alone, `rate` per unit of branch.
+Motion rolling(double rate) { return {none, {0, 0, rate}, {0, 0, rate}}; }
+/// Turning against each other about z without slip.
+Motion bending(double rate, double branch) {
+  const double half = 0.5 * (branch - (ri + rj));
+  return {none, {0, 0, -(rj + half) / branch * rate}, {0, 0, (ri + half) / branch * rate}};
 }
 
-TEST_CASE("the moment-contribution factor alone tells the load at which bending breaks", "[interaction]") {
-  const BondSection s = disc_section(0.3e-3);
-  const double sigma = 1e7, breaking = sigma * s.inertia / s.radius;
-  for (const double beta : {1.0, 0.4}) {
-    const RimStrength strength{sigma, 1e8, 0, beta};
-    CHECK(bond_use(strength, s, {0, 0, breaking / beta, 0}).share == Approx(1).epsilon(1e-14));
-  }
-  CHECK(bond_use(RimStrength{sigma, 1e8, 0, 0}, s, {0, 0, 100 * breaking, 0}).share == 0);
-}
+}  // namespace
 
-TEST_CASE("cement of finite width: the moment breaks it where linear stress opens the rim", "[interaction]") {
-  const double sigma = 3e6;
-  for (const BondSection& s : {disc_section(0.2e-3), rectangle_section(0.2e-3, 1e-3)}) {
-    const InteractionSurface surface = surface_of_width(s, sigma, 0.7);
-    for (const double stress : {-0.5 * sigma, 0.0, 2 * sigma}) {
-      CAPTURE(stress, s.polar);
-      const double normal = stress * s.area, bending = (sigma + stress) * s.inertia / s.radius;
-      CHECK(bond_use(surface, s, {normal, 0, bending, 0}).share == Approx(1).epsilon(1e-13));
-      CHECK(bond_use(surface, s, {normal, 0, bending, 0}).by == BondFailure::bending);
-      const double shear = 0.7 * (sigma + stress) * s.area;
-      CHECK(bond_use(surface, s, {normal, shear, 0, 0}).share == Approx(1).epsilon(1e-13));
-      // An ellipse between: 0.6 and 0.8 of either.
-      CHECK(bond_use(surface, s, {normal, 0.6 * shear, 0.8 * bending, 0}).share == Approx(1).epsilon(1e-13));
+TEST_CASE("a surface bond breaks where its load leaves the surface", "[bond]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    const Section section = section_of(shape, bond_radius);
+    for (const double sigma : {-0.5 * tensile, 0.0, 2 * tensile}) {  // pressure on the bond
+      INFO(name(shape) << ", pressure " << sigma);
+      const double margin = (sigma + tensile) * section.area, shortening = sigma / kn;
+      const auto pressed = [&] {
+        Rve rve = surface_pair(shape);
+        if (sigma != 0) move(rve, {{-0.5 * shortening / (50 * step), 0, 0}, none, none}, 50);
+        CHECK(column_of<SurfaceBond>(rve, SurfaceBond::broken) == 0);
+        return rve;
+      };
+      const double branch = l0 - shortening, how = sigma < 0 ? 1 : 2;
+      {
+        Rve rve = pressed();
+        const double slip = tan_friction * margin / (ks * section.area);
+        breaks_after<SurfaceBond>(rve, rolling(slip / branch / (60.5 * step)), 60, how);
+      }
+      const double turn = bending_factor * bond_radius * margin / (kn * section.inertia);
+      {
+        Rve rve = pressed();
+        breaks_after<SurfaceBond>(rve, bending(turn / (60.5 * step), branch), 60, how);
+      }
+      {
+        // 0.8 of the bending that breaks alone, then 0.6 of the slip.
+        Rve rve = pressed();
+        move(rve, bending(0.8 * turn / (40 * step), branch), 40);
+        const double slip = 0.6 * tan_friction * margin / (ks * section.area);
+        breaks_after<SurfaceBond>(rve, rolling(slip / branch / (60.5 * step)), 60, how);
+      }
+      if (dimension_of(shape) == 2) continue;
+      Rve rve = pressed();
+      const double twist = twisting_factor * bond_radius * margin / (ks * section.polar) / (60.5 * step);
+      breaks_after<SurfaceBond>(rve, {none, {-0.5 * twist, 0, 0}, {0.5 * twist, 0, 0}}, 60, how);
     }
-    CHECK(bond_use(surface, s, {-sigma * s.area, 0, 0, 0}).share == Approx(1).epsilon(1e-13));
-    CHECK(bond_use(surface, s, {-sigma * s.area, 0, 0, 0}).by == BondFailure::tension);
+    Rve rve = surface_pair(shape);
+    breaks_after<SurfaceBond>(rve, {{0.5 * tensile / kn / (60.5 * step), 0, 0}, none, none}, 60, 1);
   }
-  // Bending breaks a rectangle of width B at sigma B/6 per unit of force: M = sigma t B^2/6.
-  const BondSection s = rectangle_section(0.5, 1);
-  CHECK(bond_use(surface_of_width(s, 6, 1), s, {0, 0, 1, 0}).share == Approx(1).epsilon(1e-13));
 }
 
-TEST_CASE("the logarithmic surface meets its formula, and crushes at its compressive strength", "[interaction]") {
-  const BondSection s = disc_section(2);
-  const InteractionSurface surface{3, 40, {1.4, 0.6}, {0.7, 0.4}, {0.5, 0.3}};
-  const double Rn = 3 * s.area, Rc = 40 * s.area, Fn = 5 * s.area;
-  const double logarithm = std::log((Rc + Rn) / (Fn + Rn));
-  const double shear = 1.4 * (Fn + Rn) * std::pow(logarithm, 0.6);
-  const double bending = 0.7 * 2 * (Fn + Rn) * std::pow(logarithm, 0.4);
-  const double twisting = 0.5 * 2 * (Fn + Rn) * std::pow(logarithm, 0.3);
-  CHECK(bond_use(surface, s, {Fn, shear, 0, 0}).share == Approx(1).epsilon(1e-13));
-  CHECK(bond_use(surface, s, {Fn, 0, bending, 0}).share == Approx(1).epsilon(1e-13));
-  CHECK(bond_use(surface, s, {Fn, 0, 0, twisting}).share == Approx(1).epsilon(1e-13));
-  CHECK(bond_use(surface, s, {Fn, 0, 0, twisting}).by == BondFailure::twisting);
-  CHECK(bond_use(surface, s, {Fn, 2.0 / 3 * shear, 2.0 / 3 * bending, 1.0 / 3 * twisting}).share ==
-        Approx(1).epsilon(1e-13));
-  CHECK(bond_use(surface, s, {1.1 * Rc, 0, 0, 0}).by == BondFailure::crushing);
-  CHECK(bond_use(surface, s, {1.1 * Rc, 0, 0, 0}).share == Approx(1.1).epsilon(1e-13));
-}
-
-TEST_CASE("a contact bond breaks at its two forces", "[interaction]") {
-  const ContactBond bond{5, 3};
-  CHECK(bond_use(bond, -5, 0).share == Approx(1).epsilon(1e-15));
-  CHECK(bond_use(bond, -5, 1).by == BondFailure::tension);
-  CHECK(bond_use(bond, 100, 3).share == Approx(1).epsilon(1e-15));
-  CHECK(bond_use(bond, 100, 3).by == BondFailure::shear);
-  CHECK(bond_use(bond, 100, 0).by == BondFailure::none);
-  CHECK(bond_use(bond, -2, -0.0).share == Approx(0.4).epsilon(1e-15));
-}
-
-TEST_CASE("the part of an increment at which a bond breaks is found to 1e-14", "[interaction]") {
-  const BondSection s = disc_section(1);
-  const RimStrength strength{6, 2, 0.5, 1};
-  // From rest to a pull of 10 pi: at 0.6 of it.
-  const double part = breaking_part([&](double x) { return bond_use(strength, s, {-10 * pi * x, 0, 0, 0}).share; });
-  CHECK(part == Approx(0.6).epsilon(1e-14));
-  CHECK(bond_use(strength, s, {-10 * pi * part, 0, 0, 0}).share > 1);
-}
-
-TEST_CASE("Weibull factors have mean 1 and the modulus' scatter, and depend on the pair alone", "[interaction]") {
-  const int count = 200000;
-  for (const double modulus : {2.0, 5.0}) {
-    double sum = 0, squares = 0;
-    int below = 0;
-    const double characteristic = 1 / std::tgamma(1 + 1 / modulus);
-    for (int k = 0; k < count; ++k) {
-      const double x = weibull_factor(pair_uniform(7, k, 3 * k + 1), modulus);
-      sum += x;
-      squares += x * x;
-      below += x < characteristic;
+TEST_CASE("a contact bond bears pulls and slip, no pressure and no moment, and breaks at its two forces", "[bond]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    const double pull = 4e3, slip = 2e3, friction = 0.5;
+    {
+      Rve rve = contact_bonded(shape, pull, slip, friction);
+      move(rve, bending(1e-2, l0), 100);
+      const Network net = rve.network();
+      CHECK(net.grains[0].torque.norm() < 1e-9 * kn * 1e-3);
+      CHECK(net.grains[1].resultant.norm() < 1e-9 * kn * 1e-3);
+      move(rve, {{-1e-3, 0, 0}, none, none}, 10);  // shorter, and no contact yet
+      CHECK(rve.network().grains[1].resultant.norm() < 1e-9 * kn * 1e-3);
     }
-    const double mean = sum / count, variance = squares / count - mean * mean;
-    const double expected = std::tgamma(1 + 2 / modulus) / std::pow(std::tgamma(1 + 1 / modulus), 2) - 1;
-    const double standard_error = std::sqrt(expected / count);
-    CHECK(std::abs(mean - 1) < 5 * standard_error);
-    CHECK(variance == Approx(expected).epsilon(0.03));
-    CHECK(below / double(count) == Approx(1 - std::exp(-1)).epsilon(0.01));
+    {
+      Rve rve = contact_bonded(shape, pull, slip, friction);
+      const double rate = 0.5 * pull / kn / (60.5 * step);
+      move(rve, {{rate, 0, 0}, none, none}, 30);
+      CHECK(-rve.network().grains[1].resultant[0] == Approx(pull * 30 / 60.5).epsilon(1e-9));
+      breaks_after<ContactBond>(rve, {{rate, 0, 0}, none, none}, 30, 1);
+      const double last = pull * 61 / 60.5;
+      CHECK(column_of<ContactBond>(rve, ContactBond::released) == Approx(0.5 * last * last / kn).epsilon(1e-9));
+    }
+    // Slip, without and under pressure on the bond.
+    for (const double pressure : {0.0, 3e3}) {
+      Rve rve = contact_bonded(shape, pull, slip, friction);
+      const double shortening = pressure / kn;
+      if (pressure > 0) move(rve, {{-0.5 * shortening / (50 * step), 0, 0}, none, none}, 50);
+      const double limit = (slip + friction * pressure) / ks, branch = l0 - shortening;
+      breaks_after<ContactBond>(rve, rolling(limit / branch / (60.5 * step)), 60, 2);
+    }
   }
-  CHECK(pair_uniform(1, 12, 700) == pair_uniform(1, 700, 12));
-  CHECK(pair_uniform(1, 12, 700) != pair_uniform(2, 12, 700));
-  CHECK(pair_uniform(1, 12, 700) != pair_uniform(1, 12, 701));
-  CHECK(pair_uniform(1, 12, 700) != pair_uniform(1, 12, 700, 1));
-  CHECK(pair_uniform(0, 0, 0) > 0);
-  CHECK(pair_uniform(1, 12, 700) == Approx(0.023071156648).epsilon(1e-11));  // by hand; kept specimens draw it again
 }
 
-TEST_CASE("softening in tension spends the fracture energy along a straight line", "[interaction]") {
-  const double kn = 4e12, sigma = 5e6, G = 20;
-  const double end = softening_end(G, kn, sigma);
-  CHECK(end == Approx(2 * G / sigma / (sigma / kn)).epsilon(1e-14));
-  const BondSection s = disc_section(1e-3);
-  const BondStiffness k = bond_stiffness(s, kn, kn);
-  const RimStrength strength{sigma, HUGE_VAL, 0, 1};
-  const double last = 2 * G / sigma;
-  double spent = 0, before = 0;
-  const int steps = 200000;
-  for (int step = 1; step <= steps; ++step) {
-    const double opening = last * step / steps;
-    BondForces whole;
-    advance(whole, k, {-opening, {}, {}, 0});
-    const double damage = bond_damage(bond_use(strength, s, load_of(whole)).share, end);
-    const double stress = -damaged(whole, damage).normal / s.area;
-    if (opening > sigma / kn) CHECK(std::abs(stress - sigma * (last - opening) / (last - sigma / kn)) < 1e-9 * sigma);
-    spent += 0.5 * (stress + before) * last / steps;
-    before = stress;
+TEST_CASE("a softening bond is a beam to its strength, then a straight line to the opening of its energy", "[bond]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    const Section section = section_of(shape, bond_radius);
+    const double sigma = 4e3, energy = 3 * sigma * sigma / (2 * kn);  // r_f = 3
+    const auto pair = [&] {
+      std::vector<double> columns(interaction_columns<SofteningBond>());
+      columns[SofteningBond::first_gap] = l0 - (ri + rj);
+      columns[SofteningBond::radius] = bond_radius;
+      columns[SofteningBond::normal_stiffness] = kn;
+      columns[SofteningBond::shear_stiffness] = ks;
+      columns[SofteningBond::tensile_strength] = sigma;
+      columns[SofteningBond::cohesion] = 2 * sigma;
+      columns[SofteningBond::moment_factor] = 1;
+      columns[SofteningBond::last_share] = 3;
+      return pair_with<SofteningBond>(shape, columns);
+    };
+    const double opening = sigma / kn, rate = 0.5 * opening / (1000 * step);  // strength after 1000 steps
+    Rve rve = pair();
+    const auto pull_of = [](const Rve& now) { return -now.network().grains[1].resultant[0]; };
+    double done = 0, last = 0;
+    for (int k = 1; k <= 320; ++k) {
+      move(rve, {{rate, 0, 0}, none, none}, 10);
+      const double u = 0.01 * k * opening, pull = pull_of(rve);
+      const double exact = u < opening ? kn * u : std::max(0.0, sigma * (3 * opening - u) / (2 * opening));
+      CHECK(pull == Approx(section.area * exact).margin(1e-8 * section.area * sigma));
+      done += 0.5 * (pull + last) * 0.01 * opening;
+      last = pull;
+      if (k == 150) {  // half way down: back along the secant, and on
+        CHECK(rve.network().interactions.front().normal_stiffness == Approx(pull / (1.5 * opening)).epsilon(1e-6));
+        Rve back(rve);
+        move(back, {{-rate, 0, 0}, none, none}, 750);
+        CHECK(pull_of(back) == Approx(0.5 * pull).epsilon(1e-8));
+        move(back, {{-rate, 0, 0}, none, none}, 1250);  // pressure is borne whole
+        CHECK(pull_of(back) == Approx(-section.area * kn * 0.5 * opening).epsilon(1e-8));
+      }
+    }
+    CHECK(column_of<SofteningBond>(rve, SofteningBond::broken) == 1);
+    CHECK(done == Approx(energy * section.area).epsilon(1e-3));
+    CHECK(column_of<SofteningBond>(rve, SofteningBond::released) == Approx(energy * section.area).epsilon(2e-3));
+    // Slip: over the same r_f, without a pull to its cohesion.
+    Rve sheared = pair();
+    const double limit = 2 * sigma / ks, turn = limit / l0 / (1000 * step);
+    move(sheared, rolling(turn), 2000);
+    CHECK(sheared.network().grains[1].resultant[1] == Approx(section.area * sigma).epsilon(1e-8));  // half of 2 sigma
+    move(sheared, rolling(turn), 999);
+    CHECK(column_of<SofteningBond>(sheared, SofteningBond::broken) == 0);
+    move(sheared, rolling(turn), 2);
+    CHECK(column_of<SofteningBond>(sheared, SofteningBond::broken) == 2);
   }
-  CHECK(spent == Approx(G).epsilon(1e-6));
-  CHECK(bond_damage(1, end) == 0);
-  CHECK(bond_damage(end, end) == 1);
-  CHECK(bond_damage(1.01, 0.5) == 1);  // brittle
-  BondForces pressed;
-  pressed.normal = 3;
-  pressed.shear[1] = 2;
-  CHECK(damaged(pressed, 0.25).normal == 3);
-  CHECK(damaged(pressed, 0.25).shear[1] == 1.5);
-  CHECK(damaged_energy(BondStiffness{1, 1, 1, 1}, load_of(pressed), 0.25) == Approx(4.5 + 0.75 * 2).epsilon(1e-14));
-  const PlanarBondForces flat = damaged(PlanarBondForces{-4, 2, 8}, 0.5);
-  CHECK(flat.normal == -2);
-  CHECK(flat.shear == 1);
-  CHECK(flat.bending == 4);
 }
 
-TEST_CASE("dissolution takes the rim with what it carried and leaves the stress of the rest", "[interaction]") {
-  CHECK(dissolved_radius(1e-3, 1e-5, 40) == Approx(0.6e-3).epsilon(1e-14));
-  CHECK(dissolved_radius(1e-3, 1e-5, 400) == 0);
-  CHECK(dissolved_strength(0.01, 25) == Approx(0.75).epsilon(1e-14));
-  CHECK(dissolved_strength(0.01, 200) == 0);
-  const BondSection before = disc_section(1), after = disc_section(0.5);
-  const BondForces f{-4, {4, 0, 0}, {0, 16, 0}, 16}, left = shrunk(f, before, after);
-  CHECK(left.normal == Approx(-1).epsilon(1e-14));
-  CHECK(left.shear[0] == Approx(1).epsilon(1e-14));
-  CHECK(left.bending[1] == Approx(1).epsilon(1e-14));
-  CHECK(left.twist == Approx(1).epsilon(1e-14));
-  // The stress in bending at half the radius was half of that at the rim, and is so still.
-  CHECK(rim_stress(after, load_of(left), 1).tensile - 4 / before.area ==
-        Approx(0.5 * (rim_stress(before, load_of(f), 1).tensile - 4 / before.area)).epsilon(1e-13));
-  const PlanarBondForces flat = shrunk(PlanarBondForces{2, 2, 8}, rectangle_section(1, 1), rectangle_section(0.5, 1));
-  CHECK(flat.normal == Approx(1).epsilon(1e-14));
-  CHECK(flat.shear == Approx(1).epsilon(1e-14));
-  CHECK(flat.bending == Approx(1).epsilon(1e-14));
+TEST_CASE("cement of each model: the bonds that its keys say, and pairs bonded once", "[bond]") {
+  const double a = 1e-3, r = 0.5 * a + 1e-8, thickness = 2e-3;
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    const bool plane = dimension_of(shape) == 2;
+    Specimen s = empty_specimen(shape, 4 * a, linear_material(1e4, 5e3, 0.5));
+    if (plane) s.cell.lattice(2, 2) = thickness;
+    for (int k = 0; k < (plane ? 1 : 4); ++k)
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) add_grain(s, Vector3(i, j, plane ? 0 : k) * a, r);
+    protocol::Cementation cement;
+    cement.young_modulus = 1e8;
+    cement.shear_ratio = 0.4;
+    cement.radius = 0.5;
+    cement.tensile_strength = 2e5;
+    cement.friction_angle_deg = 45;
+    const double bond = 0.5 * r, area = plane ? 2 * bond * thickness : pi * bond * bond, stiffness = 1e8 / (2 * r);
+    const std::size_t pairs = (plane ? 2 : 3) * s.grains.size();
+    {
+      Rve rve(s);
+      cement.model = protocol::BondModel::surface;
+      rve.set_interactions(protocol::cemented(rve, cement));
+      const Interactions all = rve.interactions();
+      CHECK(static_cast<const ListOf<SurfaceBond>&>(all).items.size() == pairs);
+      CHECK(column_of<SurfaceBond>(rve, SurfaceBond::shear_factor) == Approx(1).epsilon(1e-12));
+      // Stress linear over the width: bending opens the rim at M = (sigma + R_n/A) I/R.
+      CHECK(column_of<SurfaceBond>(rve, SurfaceBond::bending_factor) == Approx(plane ? 1.0 / 3 : 0.25).epsilon(1e-12));
+      CHECK(column_of<SurfaceBond>(rve, SurfaceBond::twisting_factor) == Approx(plane ? 0 : 0.5).epsilon(1e-12));
+      cement.model = protocol::BondModel::parallel;
+      cement.cohesion = 2e5;
+      const Interactions more = protocol::cemented(rve, cement);
+      CHECK(static_cast<const ListOf<ParallelBond>&>(more).items.empty());
+    }
+    Rve rve(s);
+    cement.model = protocol::BondModel::contact;
+    cement.cohesion = 1e5;
+    rve.set_interactions(protocol::cemented(rve, cement));
+    CHECK(column_of<ContactBond>(rve, ContactBond::first_gap) == Approx(-2e-8).epsilon(1e-6));
+    CHECK(column_of<ContactBond>(rve, ContactBond::normal_stiffness) == Approx(stiffness * area).epsilon(1e-12));
+    CHECK(column_of<ContactBond>(rve, ContactBond::shear_stiffness) == Approx(0.4 * stiffness * area).epsilon(1e-12));
+    CHECK(column_of<ContactBond>(rve, ContactBond::tensile_strength) == Approx(2e5 * area).epsilon(1e-12));
+    CHECK(column_of<ContactBond>(rve, ContactBond::shear_strength) == Approx(1e5 * area).epsilon(1e-12));
+    CHECK(column_of<ContactBond>(rve, ContactBond::friction) == Approx(1).epsilon(1e-12));
+  }
 }

@@ -6,6 +6,8 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
+#include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/run.hpp"
 #include "tests/interaction/bonded.hpp"
 
 using namespace rvelab;
@@ -39,6 +41,11 @@ interaction::BridgeState exact(Shape shape, const Water& water, double gap) {
       .at(gap);
 }
 
+void set_water(Rve& rve, const Water& water) { set_settings<CapillaryBridge>(rve, {water}); }
+const std::vector<Water>& water_of(const Rve& rve) {
+  return static_cast<const SettingsOf<CapillaryBridge>&>(rve.interaction_settings()).settings;
+}
+
 /// Grains so heavy that forces do not move them, `gap` apart along x.
 Rve pair_at(Shape shape, double gap, const Water& water) {
   Material heavy = linear_material(1e3, 1e3, 0.5);
@@ -50,7 +57,7 @@ Rve pair_at(Shape shape, double gap, const Water& water) {
   add_grain(s, {-0.5 * length, 0, 0}, first_radius);
   add_grain(s, {0.5 * length, 0, 0}, second_radius);
   Rve rve(s);
-  rve.set_water(water);
+  set_water(rve, water);
   return rve;
 }
 
@@ -127,7 +134,7 @@ TEST_CASE("water in a crystal: its stress and saturation", "[bridge]") {
         for (int i = 0; i < 4; ++i) add_grain(s, Vector3(i, j, plane ? 0 : k) * a, r);
     Rve rve(s);
     const Matrix3 dry = rve.contact_stress();
-    rve.set_water(by_suction(3e3, 10));
+    set_water(rve, by_suction(3e3, 10));
     const int bridges_each = plane ? 2 : 3;
     CHECK(bridges(rve) == std::size_t(bridges_each) * rve.size());
     const double theta = 10 * pi / 180, face = plane ? a * thickness : a * a;
@@ -137,11 +144,11 @@ TEST_CASE("water in a crystal: its stress and saturation", "[bridge]") {
     const double unit = plane ? thickness : 1, pull = -unit * one.force;
     const Matrix3 wet = rve.contact_stress();
     for (int k = 0; k < rve.cell().dimension; ++k) CHECK(wet(k, k) - dry(k, k) == Approx(pull / face).epsilon(1e-7));
-    CHECK(largest(interaction_stress(rve.network(), bridges_kind) - (wet - dry)) < 1e-9 * pull / face);
+    CHECK(largest(interaction_stress(rve.network(), Family::water) - (wet - dry)) < 1e-9 * pull / face);
     const double solid = (plane ? pi * r * r * thickness : 4 * pi / 3 * r * r * r) * double(rve.size());
     double water_volume = 0;
     for (const InteractionState& c : rve.network().interactions)
-      water_volume += content_of_bridge(*rve.water(), r, r, plane ? thickness : 0, -c.overlap).volume;
+      water_volume += content_of_bridge(water_of(rve).front(), {r, r, plane ? thickness : 0, -c.overlap}).volume;
     CHECK(water_volume / (rve.cell().volume() - solid) ==
           Approx(bridges_each * double(rve.size()) * unit * one.volume / (rve.cell().volume() - solid)).epsilon(1e-9));
   }
@@ -155,7 +162,7 @@ TEST_CASE("moist packings: trials, restarts and released buffers bit by bit", "[
       const int side = dimension_of(shape) == 2 ? 8 : 5;
       Rve start =
           at_rest(disordered(shape, side, linear_material(2e4, 1e4, 0.4), Law::linear_stiffness, 0.51, 4), 1e-8);
-      start.set_water(water);
+      set_water(start, water);
       start.apply(gradient(1e-4, 0, 0, 0), 0);
       REQUIRE(bridges(start) > start.size() / 2);
       for (const double dt : {0.0, 1e-3}) {
@@ -182,7 +189,7 @@ TEST_CASE("the elastic tangent of moist packings is what small steps measure", "
     INFO(name(shape));
     const int side = dimension_of(shape) == 2 ? 8 : 5;
     Rve rve = at_rest(disordered(shape, side, linear_material(2e4, 1e4, 1e6), Law::linear_stiffness, 0.51, 4), 1e-8);
-    rve.set_water(by_suction(300));
+    set_water(rve, by_suction(300));
     for (int k = 0; k < 12; ++k) rve.apply(gradient(1e-3, 2e-3, 0, 1e-3), 0);  // some contacts open, their bridges hold
     REQUIRE(rve.relax(1e-9, 2'000'000).target_held);
     const Network net = rve.network();
@@ -198,19 +205,45 @@ TEST_CASE("flooding takes the bridges away, and what water cannot be is refused"
   Rve rve = pair_at(Shape::sphere, -1e-7, by_suction(2e3));
   part(rve, 1e-8, 1);
   REQUIRE(bridges(rve) == 1);
-  rve.set_water(by_suction(4e3));  // the bridge stays, as that of the new suction
+  set_water(rve, by_suction(4e3));  // the bridge stays, as that of the new suction
   CHECK(rve.network().interactions.front().normal_force ==
         Approx(exact(Shape::sphere, by_suction(4e3), 0).force).epsilon(1e-8));
-  rve.remove_water();
+  set_settings<CapillaryBridge>(rve, {});
   CHECK(bridges(rve) == 0);
-  CHECK(rve.water() == nullptr);
+  CHECK(water_of(rve).empty());
   Specimen without = pair_at(Shape::sphere, -1e-7, by_suction(2e3)).specimen();
-  without.water.clear();
+  static_cast<SettingsOf<CapillaryBridge>&>(without).settings.clear();
   CHECK_THROWS_WITH(Rve(without), Catch::Contains("bridges without water"));
   Water both = by_suction(1e3);
   both.volume_ratio = 0.01;
-  CHECK_THROWS_WITH(rve.set_water(both), Catch::Contains("allowed: one of them above 0"));
+  CHECK_THROWS_WITH(set_water(rve, both), Catch::Contains("water/suction_Pa = 1000") && Catch::Contains("one of them"));
   Rve discs = pair_at(Shape::disc, -1e-7, by_suction(2e3));
-  CHECK_THROWS_WITH(discs.set_water(by_volume(0.01)), Catch::Contains("between discs"));
-  CHECK_THROWS_WITH(rve.set_water(by_volume(0.5)), Catch::Contains("water/volume_ratio"));
+  CHECK_THROWS_WITH(set_water(discs, by_volume(0.01)), Catch::Contains("between discs"));
+  CHECK_THROWS_WITH(set_water(rve, by_volume(0.5)), Catch::Contains("water/volume_ratio"));
+}
+
+TEST_CASE("a stage of water reaches the saturation that is asked", "[bridge]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    const int side = dimension_of(shape) == 2 ? 8 : 5;
+    const Rve dry =
+        at_rest(disordered(shape, side, linear_material(2e4, 1e4, 0.4), Law::linear_stiffness, 0.51, 4), 1e-8);
+    const auto run = [&](const std::string& keys) {
+      const std::string text =
+          "[test]\nname = \"moist\"\ndimension = " + std::to_string(dimension_of(shape)) +
+          "\npressure_Pa = 1e3\n[loading]\nmode = \"quasi_static\"\n[[stage]]\nkind = \"water\"\n" + keys;
+      return protocol::run_protocol(protocol::parse_protocol(text, "moist.toml"), dry.specimen(), {}).end_state;
+    };
+    const Rve moist(run("saturation = 0.03\n"));
+    const Network net = moist.network();
+    double volume = 0;
+    for (const InteractionState& c : net.interactions)
+      volume += content_of_bridge(water_of(moist).front(),
+                                  {net.grains[std::size_t(c.i)].radius, net.grains[std::size_t(c.j)].radius,
+                                   dimension_of(shape) == 2 ? net.cell.lattice(2, 2) : 0, -c.overlap})
+                    .volume;
+    CHECK(volume / pore_volume(net) == Approx(0.03).epsilon(1e-6));
+    CHECK((water_of(moist).front().suction > 0) == (dimension_of(shape) == 2));
+    CHECK_THROWS_WITH(run("saturation = 0.03\nsuction_Pa = 100\n"), Catch::Contains("saturation"));
+  }
 }

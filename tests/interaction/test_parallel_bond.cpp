@@ -1,63 +1,26 @@
 // Two bonded grains against the formulas of a beam (Potyondy and Cundall 2004): each load alone and all together,
 // before and at breaking. The grains are so heavy that forces do not move them: what they do is prescribed, to the last
 // bit.
-#include "tests/interaction/bonded.hpp"
+#include "tests/interaction/bonded_pair.hpp"
 #include "tests/solver/instruction_set.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
+using namespace rvelab::test::bonded;
 
 namespace {
-
-constexpr double ri = 0.5, rj = 0.4, l0 = 1.0, bond_radius = 0.3, kn = 2e6, ks = 0.7e6, step = 1e-3;
-
-const Vector3 none(0, 0, 0);
 
 struct Strength {
   double tensile = 1e30, cohesion = 1e30, friction = 0, moment_factor = 1;
 };
 
-/// Branch along x; the gap of 0.1 keeps the grains apart, so that nothing but the bond acts.
 Rve bonded_pair(Shape shape, const Strength& strength = {}) {
-  Material heavy = linear_material(1e6, 1e6, 0.5);
-  heavy.density = 1e40;
-  Specimen s = empty_specimen(shape, 10, heavy);
-  s.solver.fixed_time_step = step;
-  add_grain(s, {-0.5 * l0, 0, 0}, ri);
-  add_grain(s, {0.5 * l0, 0, 0}, rj);
-  Bond bond;
-  bond.i = 0;
-  bond.j = 1;
-  double columns[interaction_columns<ParallelBond>()] = {};
-  columns[ParallelBond::length] = l0;
-  columns[ParallelBond::radius] = bond_radius;
-  columns[ParallelBond::normal_stiffness] = kn;
-  columns[ParallelBond::shear_stiffness] = ks;
+  std::vector<double> columns = beam_columns<ParallelBond>();
   columns[ParallelBond::tensile_strength] = strength.tensile;
   columns[ParallelBond::cohesion] = strength.cohesion;
   columns[ParallelBond::friction] = strength.friction;
   columns[ParallelBond::moment_factor] = strength.moment_factor;
-  take_columns<ParallelBond>(columns, bond);
-  bonds_of(s).push_back(bond);
-  return Rve(s);
-}
-
-struct Motion {
-  Vector3 velocity = Vector3::Zero();  ///< half of that of j against i
-  Vector3 spin_i = Vector3::Zero(), spin_j = Vector3::Zero();
-};
-
-void move(Rve& rve, const Motion& m, long steps) {
-  // Equal masses but for the radii: the mean velocity, which is taken out, must be zero.
-  const double wi = std::pow(ri, rve.cell().dimension), wj = std::pow(rj, rve.cell().dimension);
-  const Vector3 vi = -2 * wj / (wi + wj) * m.velocity, vj = 2 * wi / (wi + wj) * m.velocity;
-  rve.set_velocities({vi, vj}, {m.spin_i, m.spin_j});
-  rve.apply(Matrix3::Zero(), double(steps) * step);
-}
-
-double branch_of(const Rve& rve) {
-  const Specimen s = rve.specimen();
-  return (s.grains.position[1] - s.grains.position[0]).norm();
+  return pair_with<ParallelBond>(shape, columns);
 }
 
 }  // namespace

@@ -290,9 +290,11 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
-  specimen.water.resize(1);
-  each_interaction_law(
-      [&](auto, auto law) { static_cast<ListOf<decltype(law)>&>(specimen).items.resize(contact_count); });
+  each_interaction_law([&](auto, auto law) {
+    auto& list = static_cast<ListOf<decltype(law)>&>(specimen);
+    list.items.resize(contact_count);
+    if constexpr (FormsByItself<decltype(law)>) list.settings.resize(1);
+  });
   Pairs<RandomFill>{RandomFill(seed)}(specimen, specimen);
   return specimen;
 }
@@ -348,17 +350,34 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
     for (Vector3* history : {&c.tangential_force, &c.rolling_moment})
       *history = branch.cross(Vector3(random.within({-1, 1}), random.within({-1, 1}), random.within({-1, 1})));
   }
+  Water& water = static_cast<ListOf<CapillaryBridge>&>(s).settings.front();
+  water.suction = random.within({1, 1e5});
+  water.volume_ratio = 0;
   each_interaction_law([&](auto, auto law) {
-    auto& items = static_cast<ListOf<decltype(law)>&>(s).items;
+    using Law = decltype(law);
+    auto& items = static_cast<ListOf<Law>&>(s).items;
+    if constexpr (FormsByItself<Law>) {
+      auto& settings = static_cast<ListOf<Law>&>(s).settings;
+      const bool hertz = with_law(s.contact.law, [](auto of) { return decltype(of)::Force::needs_root_overlap; });
+      if (Law::misfit(settings.front(), {s.cell.dimension, hertz}) != nullptr) settings.clear(), items.clear();
+    }
     for (std::size_t k = 0; k < items.size(); ++k) {
       items[k].i = s.contacts[k].i;
       items[k].j = s.contacts[k].j;
       items[k].image = s.contacts[k].image;
     }
   });
-  s.water.front().suction = random.within({1, 1e5});
-  s.water.front().volume_ratio = 0;
   return s;
+}
+
+/// The first one from this seed on that has interactions of every law: JKR asks for a Hertz law.
+inline Specimen with_every_interaction(unsigned seed) {
+  for (;; ++seed) {
+    Specimen s = random_specimen(seed);
+    bool all = true;
+    each_interaction_law([&](auto, auto law) { all &= !static_cast<const ListOf<decltype(law)>&>(s).items.empty(); });
+    if (all) return s;
+  }
 }
 
 inline records::TestResult random_result(unsigned seed, std::size_t record_count = 23) {

@@ -99,11 +99,11 @@ TEST_CASE("the manual lists exactly the datasets of a file, with their types, sh
   const Folder folder;
   io::write_specimen(random_bits(8), folder / "s.h5");
   // The end state of another file stands for a snapshot.
-  test::write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
+  test::write_records(random_result(8), with_every_interaction(8), "", folder / "whole.h5");
   io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
   test.checkpoint = random_checkpoint(8);
-  const auto snapshot = io::encode_snapshot(12, random_specimen(8));
+  const auto snapshot = io::encode_snapshot(12, with_every_interaction(8));
   io::Journal journal(folder / "snapshots");
   journal.begin();
   test.snapshots = {{12, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
@@ -143,8 +143,12 @@ TEST_CASE("the manual lists exactly the datasets of a file, with their types, sh
                               : name == "/provenance/packages" ? "2"
                               : name == "/test/quantities"     ? "q"
                                                                : in_readme(entry.shape);
-    // Bonds and bridges are as many as contacts here.
-    const std::string count = name.starts_with("/bonds/") ? "b" : name.starts_with("/bridges/") ? "w" : "c";
+    // Interactions of each law are as many as contacts here.
+    const bool adhesive = name.starts_with("/jkr_") || name.starts_with("/dmt_");
+    const std::string count = name.find("bonds/") != std::string::npos ? "b"
+                              : name.starts_with("/bridges/")          ? "w"
+                              : adhesive                               ? "a"
+                                                                       : "c";
     CHECK(row[2] == (shape.starts_with("c") ? count + shape.substr(1) : shape));
     CHECK(row[3] == entry.units);
     CHECK(!row[4].empty());

@@ -95,14 +95,14 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.contact = s.contact;
   model.damping = s.damping;
   model.options = s.solver;
-  model.water = s.water;
+  copy_settings(s, model.interaction_settings);
   model.id = s.grains.id;
   model.material = s.grains.material;
   model.radius = s.grains.radius;
   model.thickness = s.cell.lattice(2, 2);
   const auto kernels_with = [&](bool dashpot) {
     return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
-                        model.contact.hertz_radius, model.dimension() == 3 && (has_any(s) || !s.water.empty())});
+                        model.contact.hertz_radius, model.dimension() == 3 && has_any(s)});
   };
   model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
   model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);
@@ -157,7 +157,6 @@ Specimen close_assembly(const Model& model, const Assembly& assembly) {
   s.contact = model.contact;
   s.damping = model.damping;
   s.solver = model.options;
-  s.water = model.water;
   s.state = assembly.state;
   s.grains.id = model.id;
   s.grains.radius = model.radius;
@@ -182,6 +181,7 @@ Specimen close_assembly(const Model& model, const Assembly& assembly) {
   }
   s.contacts = contacts_of(model, assembly.pairs);
   static_cast<Interactions&>(s) = interactions_of(assembly.pairs);
+  copy_settings(model.interaction_settings, s);
   return in_id_order(std::move(s), assembly.state.memory_order);
 }
 

@@ -23,7 +23,7 @@ struct Model {
   ContactModel contact;
   Damping damping;
   SolverOptions options;
-  std::vector<Water> water;  ///< none or one
+  InteractionSettings interaction_settings;
   SharedArray<std::int64_t> id;
   SharedArray<std::int32_t> material;
   SharedArray<double> radius, mass, inertia;    ///< m, kg, kg m^2 (physical)

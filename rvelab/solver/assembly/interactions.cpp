@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/interaction/bridge_of_pair.hpp"
+#include "rvelab/contact/laws.hpp"
+#include "rvelab/solver/assembly/listing.hpp"
 
 namespace rvelab {
 
@@ -121,41 +122,105 @@ void follow_wrapping(const std::vector<Image>& moved, int dimension, Interaction
   });
 }
 
-void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
-                     Interactions& interactions) {
-  if (model.water.empty()) return;
-  using Bridge = Interaction<CapillaryBridge>;
-  std::vector<Bridge>& bridges = static_cast<ListOf<CapillaryBridge>&>(interactions).items;
-  const std::vector<Bridge> before = std::move(bridges);
-  bridges.clear();
+namespace {
+
+/// Pairs of grains as laws see them.
+struct PairMaker {
+  const ContactModel& contact;
+  const std::vector<Material>& materials;
+  double thickness;
+
+  GrainPair of(double ri, std::int32_t material_i, double rj, std::int32_t material_j, double length) const {
+    const double kn = with_law(contact.law, [&](auto law) {
+      return decltype(law)::mix(materials[std::size_t(material_i)], ri, materials[std::size_t(material_j)], rj,
+                                thickness)
+          .kn;
+    });
+    return {ri, rj, thickness, length - (ri + rj), kn};
+  }
+};
+
+template <FormsByItself Law>
+bool is_kept(const Interaction<Law>& item) {
+  double columns[interaction_columns<Law>()];
+  put_columns<Law>(item, columns);
+  return Law::kept([&](int c) { return columns[c]; });
+}
+
+template <FormsByItself Law>
+void prepare(const typename Law::Settings& settings, const GrainPair& pair, Interaction<Law>& item) {
+  double columns[interaction_columns<Law>()];
+  put_columns<Law>(item, columns);
+  Law::prepare(settings, pair, columns);
+  take_columns<Law>(columns, item);
+}
+
+/// One for each listed pair, in order.
+template <FormsByItself Law>
+std::vector<Interaction<Law>> of_listed(const Model& model, const Assembly& assembly,
+                                        const std::vector<ListedPair>& listed,
+                                        const std::vector<Interaction<Law>>& before) {
+  const PairMaker pairs{model.contact, model.materials, model.dimension() == 2 ? model.thickness : 0};
+  const typename Law::Settings& settings =
+      static_cast<const SettingsOf<Law>&>(model.interaction_settings).settings.front();
+  std::vector<Interaction<Law>> items;
   auto old = before.begin();
-  double columns[interaction_columns<CapillaryBridge>()];
-  const auto is_present = [&](const Bridge& bridge) {
-    put_columns<CapillaryBridge>(bridge, columns);
-    return columns[CapillaryBridge::present] != 0;
-  };
   for (const ListedPair& pair : listed) {
-    Bridge bridge;
-    bridge.i = pair.i;
-    bridge.j = pair.j;
-    bridge.image = pair.image;
-    for (; old != before.end() && pair_of(*old) < pair_of(bridge); ++old)
-      if (is_present(*old)) bridges.push_back(*old);
-    if (old != before.end() && pair_of(*old) == pair_of(bridge)) {
-      bridges.push_back(*old++);
+    Interaction<Law> item;
+    item.i = pair.i;
+    item.j = pair.j;
+    item.image = pair.image;
+    for (; old != before.end() && pair_of(*old) < pair_of(item); ++old)
+      if (is_kept<Law>(*old)) items.push_back(*old);
+    if (old != before.end() && pair_of(*old) == pair_of(item)) {
+      items.push_back(*old++);
       continue;
     }
-    make_bridge(model.water.front(), model.radius[std::size_t(pair.i)], model.radius[std::size_t(pair.j)],
-                model.dimension() == 2 ? model.thickness : 0, columns);
     const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
     const Vector3 branch =
         assembly.position(model, j) + translation(assembly.cell, pair.image) - assembly.position(model, i);
-    if (branch.norm() < model.radius[i] + model.radius[j]) columns[CapillaryBridge::present] = 1;
-    take_columns<CapillaryBridge>(columns, bridge);
-    bridges.push_back(bridge);
+    prepare<Law>(settings,
+                 pairs.of(model.radius[i], model.material[i], model.radius[j], model.material[j], branch.norm()), item);
+    items.push_back(item);
   }
   for (; old != before.end(); ++old)
-    if (is_present(*old)) bridges.push_back(*old);
+    if (is_kept<Law>(*old)) items.push_back(*old);
+  return items;
+}
+
+}  // namespace
+
+void prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                          double skin, Interactions& interactions) {
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    if constexpr (FormsByItself<Law>) {
+      const auto& settings = static_cast<const SettingsOf<Law>&>(model.interaction_settings).settings;
+      if (settings.empty()) return;
+      auto& items = static_cast<ListOf<Law>&>(interactions).items;
+      const double reach = Law::reach(settings.front());
+      items = reach > 0 ? of_listed<Law>(model, assembly, near_pairs(model, assembly, skin + reach), items)
+                        : of_listed<Law>(model, assembly, listed, items);
+    }
+  });
+}
+
+void prepare_interactions(Specimen& s) {
+  const PairMaker pairs{s.contact, s.materials, s.cell.dimension == 2 ? s.cell.lattice(2, 2) : 0};
+  each_interaction_law([&](auto, auto law) {
+    using Law = decltype(law);
+    if constexpr (FormsByItself<Law>) {
+      auto& list = static_cast<ListOf<Law>&>(s);
+      for (Interaction<Law>& item : list.items) {
+        const auto i = std::size_t(item.i), j = std::size_t(item.j);
+        const Vector3 branch = s.grains.position[j] + translation(s.cell, item.image) - s.grains.position[i];
+        prepare<Law>(
+            list.settings.front(),
+            pairs.of(s.grains.radius[i], s.grains.material[i], s.grains.radius[j], s.grains.material[j], branch.norm()),
+            item);
+      }
+    }
+  });
 }
 
 std::size_t interaction_rows(const PairTable& pairs) {
@@ -211,7 +276,6 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
       using Law = decltype(law);
       for (std::size_t k = 0; k < t.count; ++k) {
         const auto column = [&](int c) { return t.column[std::size_t(c)][k]; };
-        if (!Law::acts(column)) continue;
         ActingInteraction a;
         a.kind = t.kind;
         a.i = std::size_t(t.i[k]);
@@ -220,8 +284,9 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
         a.branch =
             assembly.position(model, a.j) + translation(assembly.cell, t.image[k]) - assembly.position(model, a.i);
         a.length = a.branch.norm();
-        a.normal = a.branch / a.length;
         const double half_gap = 0.5 * (a.length - (model.radius[a.i] + model.radius[a.j]));
+        if (!Law::acts(column, 2 * half_gap)) continue;
+        a.normal = a.branch / a.length;
         a.arm_i = model.radius[a.i] + half_gap;
         a.arm_j = model.radius[a.j] + half_gap;
         const double* row = assembly.pairs.force.data() + (t.row_at + k) * (plane ? 4 : 8);

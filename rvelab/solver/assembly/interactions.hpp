@@ -8,12 +8,14 @@ namespace rvelab {
 
 /// Puts them into the table, in order; their derived arrays are made with those of the pairs.
 void set_interactions(const Model& model, const Interactions& from, PairTable& pairs);
-/// `all`: also what stands for pairs that are only near (bridges that are not there).
+/// `all`: also what stands for pairs that are only near, of laws whose interactions form by themselves.
 Interactions interactions_of(const PairTable& pairs, bool all = false);
-/// Bridges that may form: each listed pair, in order, has one, present or not; those that are not present and not
-/// listed go. A pair that touches and had none is wetted. Nothing in a specimen without water.
-void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
-                     Interactions& interactions);
+/// Interactions that may form: of each law whose settings the specimen has, each pair that is listed (or nearer than
+/// `skin` beyond the law's reach), in order, has one; those that are not kept and not listed go.
+void prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                          double skin, Interactions& interactions);
+/// Those that a specimen has become what its settings make of them.
+void prepare_interactions(Specimen& specimen);
 /// After the basis of the lattice changed, the frame turned by `turn`, grains g moved by moved[g] lattice vectors.
 void follow_reduction(const Reduction& reduction, int dimension, Interactions& interactions);
 void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions);

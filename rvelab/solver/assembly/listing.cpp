@@ -36,14 +36,6 @@ void store(const Model& model, PairTable& pairs, std::size_t p, const Contact& c
   if (model.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
 }
 
-/// Pairs closer than the skin as the grains lie now.
-std::vector<ListedPair> near_pairs(const Model& model, const Assembly& assembly, double skin) {
-  std::vector<ListedPair> pairs =
-      list_pairs(assembly.cell, assembly.rows.data(), model.row_length(), model.reach(), skin, model.sharing());
-  keep_near_outlines(model, assembly, skin, pairs);
-  return pairs;
-}
-
 /// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
@@ -86,9 +78,10 @@ void arrange(const Model& model, const Assembly& assembly, const std::vector<Lis
   for (std::size_t k = 0; k < n; ++k) pairs.order[k] = next[group[k]]++;
 }
 
-/// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
-void fill(const Model& model, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried,
-          Interactions interactions, Lost lost, Assembly& assembly) {
+/// Makes the arrays of a new list, of pairs nearer than `skin`, and fills in the carried history, sorted by key.
+void fill(const Model& model, double skin, const std::vector<Contact>& carried, Interactions interactions, Lost lost,
+          Assembly& assembly) {
+  const std::vector<ListedPair> listed = near_pairs(model, assembly, skin);
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
   std::vector<const Contact*> histories(n, nullptr);
   std::size_t k = 0;
@@ -117,7 +110,7 @@ void fill(const Model& model, const std::vector<ListedPair>& listed, const std::
     pairs.i[p] = pairs.j[p] = std::int32_t(model.size());  // a padding grain: no extent, no mass
     pairs.image[p] = Image{1, 0, 0};
   }
-  prepare_bridges(model, assembly, listed, interactions);
+  prepare_interactions(model, assembly, listed, skin, interactions);
   set_interactions(model, interactions, pairs);
   // The grain loop reads a moment beside each force row in space.
   const std::size_t more = model.dimension() == 3 ? interaction_rows(pairs) : 0;
@@ -185,6 +178,13 @@ void rotate_rows(const Model& model, const Matrix3& turn, Buffer& rows) {
 
 }  // namespace
 
+std::vector<ListedPair> near_pairs(const Model& model, const Assembly& assembly, double skin) {
+  std::vector<ListedPair> pairs =
+      list_pairs(assembly.cell, assembly.rows.data(), model.row_length(), model.reach(), skin, model.sharing());
+  keep_near_outlines(model, assembly, skin, pairs);
+  return pairs;
+}
+
 std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs) {
   std::vector<std::vector<Contact>> found(pieces_in(pairs.listed));
   const auto look_at = [&](std::size_t p, std::vector<Contact>& here) {
@@ -216,8 +216,7 @@ void list_with(const Model& model, std::vector<Contact> contacts, const Interact
   // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
   const double skin = assembly.state.list.skin,
                moved = assembly.state.list.built ? skin - listed_gap(model, assembly) : 0;
-  fill(model, near_pairs(model, assembly, skin + std::min(std::max(0.0, moved), skin)), contacts, interactions,
-       Lost::refused, assembly);
+  fill(model, skin + std::min(std::max(0.0, moved), skin), contacts, interactions, Lost::refused, assembly);
 }
 
 void check_height(const Model& model, const Cell& cell) {
@@ -272,7 +271,7 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
   }
   sort_by_key(carried);
   follow_wrapping(moved, model.dimension(), interactions);
-  fill(model, near_pairs(model, assembly, assembly.state.list.skin), carried, interactions, Lost::dropped, assembly);
+  fill(model, assembly.state.list.skin, carried, interactions, Lost::dropped, assembly);
   assembly.state.list.built = true;
   assembly.state.list.lattice = assembly.cell.lattice;
   assembly.state.list.travel = 0;

@@ -9,6 +9,9 @@ namespace rvelab {
 /// if a contact is none of the pairs listed, IncrementFailed if the list would be too long (list_size.hpp).
 void list_with(const Model& model, std::vector<Contact> contacts, const Interactions& interactions, Assembly& assembly);
 
+/// Pairs closer than `skin`, m, as the grains lie now.
+std::vector<ListedPair> near_pairs(const Model& model, const Assembly& assembly, double skin);
+
 /// The pairs that have a history, ordered by (i, j, image).
 std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs);
 
