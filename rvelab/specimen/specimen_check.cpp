@@ -350,6 +350,10 @@ class Relations {
         refuse(pair(group, c, k) + " stands twice; allowed: each " + each + " once");
       if (k > 0 && pair_of(c) < pair_of(items[k - 1]))
         refuse(pair(group, c, k) + " is out of order; allowed: " + group + " sorted by i, then j, then image");
+      for (std::size_t d = 0; d < c.image.size(); ++d)  // cells that are reduced add to it
+        if (std::abs(double(c.image[d])) > 1e9)
+          refuse(group + "/image[" + std::to_string(k) + ", " + std::to_string(d) +
+                 "] = " + std::to_string(c.image[d]) + " is out of range; allowed: -1e9 to 1e9");
     }
   }
 
@@ -378,7 +382,38 @@ class Relations {
       if (!items.empty() && !is_round(s.shape))
         refuse(std::string(Law::name) + " of grains that are not round; allowed: between discs or spheres");
       check_pairs(Law::name, "pair", items);
+      for (std::size_t k = 0; k < items.size(); ++k) check_interaction<Law>(items[k], k);
     });
+  }
+
+  /// Numbers that stand for a state are whole; what a file has is there; what acts is about as long as when it was
+  /// made, or its image is another's and it would tear the grains apart in one step.
+  template <class Law>
+  void check_interaction(const Interaction<Law>& item, std::size_t k) const {
+    double columns[interaction_columns<Law>()];
+    put_columns(item, columns);
+    const auto refuse_state = [&](const char* field, double found, const char* allowed) {
+      refuse(at(std::string(Law::name) + "/" + field, k) + " = " + in_words(found) +
+             " is out of range; allowed: " + allowed);
+    };
+    if constexpr (requires { Law::broken; }) {
+      const double broken = columns[Law::broken];
+      if (broken != std::floor(broken)) refuse_state("broken", broken, "a whole number");
+    }
+    const auto column = [&](int number) { return columns[number]; };
+    if constexpr (requires { Law::present; }) {
+      const double present = columns[Law::present];
+      if (present != std::floor(present) || !Law::kept(column)) refuse_state("present", present, "1, of what is there");
+    }
+    if constexpr (requires { Law::length; }) {
+      if (!Law::acts(column)) return;
+      const Vector3 branch = s.grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
+                             s.grains.position[std::size_t(item.i)];
+      const double now = branch.stableNorm(), made = columns[Law::length];
+      if (now > 10 * made || made > 10 * now)
+        refuse(at(std::string(Law::name) + "/length_m", k) + " = " + in_words(made) + " of a pair whose centres are " +
+               in_words(now) + " m apart; allowed: a tenth to ten times that, of what still acts");
+    }
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong

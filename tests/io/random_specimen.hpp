@@ -349,11 +349,23 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
       *history = branch.cross(Vector3(random.within({-1, 1}), random.within({-1, 1}), random.within({-1, 1})));
   }
   each_interaction_law([&](auto, auto law) {
-    auto& items = static_cast<ListOf<decltype(law)>&>(s).items;
+    using Law = decltype(law);
+    auto& items = static_cast<ListOf<Law>&>(s).items;
     for (std::size_t k = 0; k < items.size(); ++k) {
-      items[k].i = s.contacts[k].i;
-      items[k].j = s.contacts[k].j;
-      items[k].image = s.contacts[k].image;
+      auto& item = items[k];
+      item.i = s.contacts[k].i;
+      item.j = s.contacts[k].j;
+      item.image = s.contacts[k].image;
+      // States are whole numbers, and what acts is about as long as when it was made.
+      double columns[interaction_columns<Law>()];
+      put_columns(item, columns);
+      if constexpr (requires { Law::broken; }) columns[Law::broken] = below(3);
+      if constexpr (requires { Law::present; }) columns[Law::present] = 1;
+      if constexpr (requires { Law::length; })
+        columns[Law::length] = (grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
+                                grains.position[std::size_t(item.i)])
+                                   .norm();
+      take_columns(columns, item);
     }
   });
   s.water.front().suction = random.within({1, 1e5});

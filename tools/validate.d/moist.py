@@ -29,7 +29,8 @@ import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-from verdict import tell_verdicts, verdict
+from verdict import tell_verdicts
+from verdict import verdict as row_of_verdict
 
 PROTOCOLS = pathlib.Path("protocols").resolve()
 RECIPE = """[pack]
@@ -54,6 +55,10 @@ friction = 0.5
 SUCTIONS = (3e3, 1e4, 3e4, 1e5)
 PRESSURES = (2e3, 8e3)
 STRETCHES = (1.0, 1.03, 1.08)
+
+
+def verdict(*words):
+    row_of_verdict(*words, width=92)
 
 
 def call(*words):
