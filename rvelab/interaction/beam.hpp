@@ -54,8 +54,8 @@ struct Beam {
       Criterion::strengths[1],
       Criterion::strengths[2],
       Criterion::strengths[3],
-      {"broken", "1", {0, 2}},                       // 0 no, 1 in tension, 2 in shear
-      {"released_energy_J", "J", number_from_zero},  // as it broke
+      {"broken", "1", {0, 2}, Turning::scalar, true},  // 0 no, 1 in tension, 2 in shear
+      {"released_energy_J", "J", number_from_zero},    // as it broke
       {"shear_force_N", "N", {-no_bound, no_bound}, Turning::tangent},
       {"bending_moment_N_m", "N m", {-no_bound, no_bound}, Turning::moment},
       {"twisting_moment_N_m", "N m", {-no_bound, no_bound}},

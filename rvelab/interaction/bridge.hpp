@@ -24,8 +24,8 @@ struct CapillaryBridge {
   static constexpr RemovalKey removal{"flooded", "the pores fill: all bridges go"};
   static constexpr int terms = 16;
   static constexpr InteractionField fields[] = {
-      {"present", "1", {0, 1}},                  // 0: the grains are near, without a bridge
-      {"rupture_gap_m", "m", number_from_zero},  // s_c
+      {"present", "1", {0, 1}, Turning::scalar, true},  // 0: the grains are near, without a bridge
+      {"rupture_gap_m", "m", number_from_zero},         // s_c
       {"scale_N", "N", number_from_zero},
       {"steepness", "1", {0, 1}},              // k
       {"square_m2", "m^2", number_from_zero},  // b

@@ -22,9 +22,9 @@ struct ContactBond {
       {"shear_stiffness_N_m", "N/m", number_from_zero},   // ks
       {"tensile_strength_N", "N", number_from_zero},
       {"shear_strength_N", "N", number_from_zero},
-      {"friction", "1", number_from_zero},           // tan(phi)
-      {"broken", "1", {0, 2}},                       // 0 no, 1 in tension, 2 in shear
-      {"released_energy_J", "J", number_from_zero},  // as it broke
+      {"friction", "1", number_from_zero},             // tan(phi)
+      {"broken", "1", {0, 2}, Turning::scalar, true},  // 0 no, 1 in tension, 2 in shear
+      {"released_energy_J", "J", number_from_zero},    // as it broke
       {"shear_force_N", "N", {-no_bound, no_bound}, Turning::tangent},
   };
   enum Column {

@@ -35,9 +35,9 @@ struct JkrAdhesion {
   static constexpr const auto& settings_fields = surface_energy_fields;
   static constexpr RemovalKey removal{"removed", "the grains stick no longer"};
   static constexpr InteractionField fields[] = {
-      {"touching", "1", {0, 1}},                  // 0: the grains are near and have not met
-      {"force_scale_N", "N", positive_number},    // F1
-      {"overlap_scale_m", "m", positive_number},  // delta1
+      {"touching", "1", {0, 1}, Turning::scalar, true},  // 0: the grains are near and have not met
+      {"force_scale_N", "N", positive_number},           // F1
+      {"overlap_scale_m", "m", positive_number},         // delta1
   };
   enum Column { touching, force_scale, overlap_scale };
 

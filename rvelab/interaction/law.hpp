@@ -37,6 +37,7 @@ struct InteractionField {
   const char *name, *unit;
   Interval allowed;
   Turning turning = Turning::scalar;
+  bool whole = false;  ///< stands for a state, 0, 1, ...
 };
 
 /// Doubles that the fields of a law take.

@@ -28,7 +28,7 @@ struct SofteningBond {
       {"moment_factor", "1", {0, 1}},                       // beta
       {"last_share", "1", number_from_zero},                // r_f
       {"largest_share", "1", number_from_zero},             // of r
-      {"broken", "1", {0, 2}},                              // 0 no, 1 in tension, 2 in shear
+      {"broken", "1", {0, 2}, Turning::scalar, true},       // 0 no, 1 in tension, 2 in shear
       {"released_energy_J", "J", number_from_zero},         // spent by softening so far
       {"whole_shear_force_N", "N", any_number, Turning::tangent},
       {"whole_bending_moment_N_m", "N m", any_number, Turning::moment},

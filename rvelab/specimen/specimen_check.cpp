@@ -351,6 +351,10 @@ class Relations {
         refuse(pair(group, c, k) + " stands twice; allowed: each " + each + " once");
       if (k > 0 && pair_of(c) < pair_of(items[k - 1]))
         refuse(pair(group, c, k) + " is out of order; allowed: " + group + " sorted by i, then j, then image");
+      for (std::size_t d = 0; d < c.image.size(); ++d)  // cells that are reduced add to it
+        if (std::abs(double(c.image[d])) > 1e9)
+          refuse(group + "/image[" + std::to_string(k) + ", " + std::to_string(d) +
+                 "] = " + std::to_string(c.image[d]) + " is out of range; allowed: -1e9 to 1e9");
     }
   }
 
@@ -367,6 +371,7 @@ class Relations {
       if (!items.empty() && !is_round(s.shape))
         refuse(std::string(Law::name) + " of grains that are not round; allowed: between discs or spheres");
       check_pairs(Law::name, "pair", items);
+      for (std::size_t k = 0; k < items.size(); ++k) check_interaction<Law>(items[k], k);
     });
   }
 
@@ -393,6 +398,36 @@ class Relations {
     for (const auto& field : Law::settings_fields)
       values += (values.empty() ? "" : ", ") + name + "/" + field.name + " = " + in_words(rows.front().*field.value);
     refuse(values + "; allowed: " + misfit);
+  }
+
+  /// Numbers that stand for a state are whole; what a file has is there; what acts is about as long as when it was
+  /// made, or its image is another's and it would tear the grains apart in one step.
+  template <class Law>
+  void check_interaction(const Interaction<Law>& item, std::size_t k) const {
+    double columns[interaction_columns<Law>()];
+    put_columns(item, columns);
+    const auto column = [&](int number) { return columns[number]; };
+    each_field<Law>(item, [&](const InteractionField& field, const auto& value) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+        if (!field.whole) return;
+        const std::string what = at(std::string(Law::name) + "/" + field.name, k) + " = " + in_words(value);
+        if (value != std::floor(value)) refuse(what + " is out of range; allowed: a whole number");
+        if (!Law::kept(column)) refuse(what + " is out of range; allowed: 1, of what is there");
+      }
+    });
+    const double radii = s.grains.radius[std::size_t(item.i)] + s.grains.radius[std::size_t(item.j)];
+    const Vector3 branch = s.grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
+                           s.grains.position[std::size_t(item.i)];
+    const double now = branch.stableNorm();
+    const auto check_length = [&](const char* field, double made) {
+      if (now > 10 * made || made > 10 * now)
+        refuse(at(std::string(Law::name) + "/" + field, k) + ": made with " + in_words(made) +
+               " m between centres that are " + in_words(now) +
+               " m apart; allowed: a tenth to ten times that, of what still acts");
+    };
+    if (!Law::acts(column, now - radii)) return;
+    if constexpr (requires { Law::length; }) check_length("length_m", columns[Law::length]);
+    if constexpr (requires { Law::first_gap; }) check_length("gap_m", columns[Law::first_gap] + radii);
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong

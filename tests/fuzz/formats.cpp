@@ -257,7 +257,7 @@ std::string sealed_edit(const Bytes& seed, View input, const std::string& name) 
   return sealed_file(name, edited(View(seed).first(seed.size() - io::seal_bytes), choices));
 }
 
-Answer check_specimen_values(View input) { return check_specimen_file(sealed_edit(specimen_seed(), input, "s.h5")); }
+Answer check_specimen_values(View input) { return check_specimen_file(sealed_edit(cemented_seed(), input, "s.h5")); }
 
 Answer check_record_values(View input) { return check_test(sealed_edit(record_seed(), input, "r.h5")); }
 

@@ -96,7 +96,7 @@ class Editor {
     if (names_.empty()) return;
     const std::string& name = choices_.among(names_);
     if (H5Lexists(file_, name.c_str(), H5P_DEFAULT) <= 0) return;
-    switch (choices_.below(12)) {
+    switch (choices_.below(14)) {
       case 0:
       case 1:
       case 2:
@@ -118,6 +118,10 @@ class Editor {
         return rearrange("/contacts/");
       case 11:
         return rearrange("/grains/");
+      case 12:
+        return rearrange("/bonds/");
+      case 13:
+        return rearrange("/bridges/");
       default:
         return change_attribute(choices_.below(2) == 0 ? "format_version" : "format");
     }

@@ -5,6 +5,7 @@
 
 #include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/protocol/cementation.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/fuzz/journals.hpp"
 #include "tests/io/nine_discs.hpp"
@@ -46,9 +47,26 @@ std::vector<Bytes> joined(std::vector<Bytes> first, const std::vector<Bytes>& se
 
 std::string data_file(const std::string& name) { return RVELAB_TEST_DATA "/" + name; }
 
+Specimen cemented_and_moist() {
+  Rve rve(test::nine_discs());
+  protocol::Cementation cement;
+  cement.gap = 0.5;
+  cement.young_modulus = 50e6;
+  cement.tensile_strength = cement.cohesion = 1e3;
+  rve.set_interactions(protocol::cemented(rve, cement));
+  Water water;
+  water.suction = 50;
+  rve.set_water(water);
+  Matrix3 gradient = Matrix3::Zero();
+  gradient(0, 0) = -5e-3;  // some break
+  gradient(1, 1) = 5e-3;
+  rve.apply(gradient, 0);
+  return rve.specimen();
+}
+
 io::RecordedTest seed_records() {
   io::RecordedTest test;
-  test.checkpoint.specimen = test::nine_discs();
+  test.checkpoint.specimen = cemented_and_moist();
   test.provenance = io::provenance_of("[test]\n", test.checkpoint.specimen);
   test.result = test::random_result(1, 3);
   return test;
@@ -68,6 +86,15 @@ Bytes record_seed() {
     const test::Folder folder;
     io::write_recorded_test(seed_records(), folder / "r.h5");
     return bytes_in(folder / "r.h5");
+  }();
+  return made;
+}
+
+Bytes cemented_seed() {
+  static const Bytes made = [] {
+    const test::Folder folder;
+    io::write_specimen(cemented_and_moist(), folder / "s.h5");
+    return bytes_in(folder / "s.h5");
   }();
   return made;
 }
@@ -100,14 +127,15 @@ std::vector<Bytes> text_seeds() { return files_in(corpus + "text"); }
 std::vector<Bytes> gz_seeds() { return joined(joined(dump_seeds(), data_seeds()), text_seeds()); }
 std::vector<Bytes> curve_seeds() { return files_in(corpus + "curve"); }
 
-std::vector<Bytes> specimen_seeds() { return {specimen_seed()}; }
+std::vector<Bytes> specimen_seeds() { return {specimen_seed(), cemented_seed()}; }
 std::vector<Bytes> crafted_seeds() {
-  const Bytes whole = specimen_seed();
-  return {Bytes(whole.begin(), whole.end() - std::ptrdiff_t(io::seal_bytes))};
+  std::vector<Bytes> seeds = specimen_seeds();
+  for (Bytes& seed : seeds) seed.resize(seed.size() - io::seal_bytes);
+  return seeds;
 }
 std::vector<Bytes> record_seeds() { return {record_seed()}; }
 std::vector<Bytes> journal_seeds() { return {whole_journal()}; }
-std::vector<Bytes> snapshot_seeds() { return {Rve(test::nine_discs()).save()}; }
+std::vector<Bytes> snapshot_seeds() { return {Rve(test::nine_discs()).save(), Rve(cemented_and_moist()).save()}; }
 
 std::vector<Bytes> choice_seeds() {
   std::vector<Bytes> seeds{{}};

@@ -15,8 +15,10 @@ std::string data_file(const std::string& name);
 
 /// Files of nine discs, sealed.
 Bytes specimen_seed();
+/// The same with bonds, some of them broken, and bridges of water.
+Bytes cemented_seed();
 Bytes record_seed();
-io::RecordedTest seed_records();
+io::RecordedTest seed_records();  ///< its checkpoint is of cemented, moist discs
 
 /// Particles, contacts and META.json of one text; at least one part.
 std::vector<std::string> csv_parts(const std::string& text);

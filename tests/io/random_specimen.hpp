@@ -362,9 +362,23 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
       if (Law::misfit(settings.front(), {s.cell.dimension, hertz}) != nullptr) settings.clear(), items.clear();
     }
     for (std::size_t k = 0; k < items.size(); ++k) {
-      items[k].i = s.contacts[k].i;
-      items[k].j = s.contacts[k].j;
-      items[k].image = s.contacts[k].image;
+      auto& item = items[k];
+      item.i = s.contacts[k].i;
+      item.j = s.contacts[k].j;
+      item.image = s.contacts[k].image;
+      // States are whole numbers, and what acts is about as long as when it was made.
+      double columns[interaction_columns<Law>()];
+      put_columns(item, columns);
+      if constexpr (requires { Law::broken; }) columns[Law::broken] = below(3);
+      if constexpr (requires { Law::present; }) columns[Law::present] = 1;
+      if constexpr (requires { Law::touching; }) columns[Law::touching] = 1;
+      const double length = (grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
+                             grains.position[std::size_t(item.i)])
+                                .norm();
+      if constexpr (requires { Law::length; }) columns[Law::length] = length;
+      if constexpr (requires { Law::first_gap; })
+        columns[Law::first_gap] = length - grains.radius[std::size_t(item.i)] - grains.radius[std::size_t(item.j)];
+      take_columns(columns, item);
     }
   });
   return s;

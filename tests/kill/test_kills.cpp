@@ -25,16 +25,26 @@ using namespace rvelab::test;
 
 namespace {
 
-/// The run that is killed: stages, increments, snapshots, and checkpoints ten times a second.
+/// Stages that give every pair cement and water.
+const std::string cement_and_water =
+    "[[stage]]\nkind = \"cement\"\nyoung_modulus_Pa = 50e6\ntensile_strength_Pa = 100e3\ncohesion_Pa = 100e3\n"
+    "strength_scatter = 0.2\n[[stage]]\nkind = \"water\"\nsuction_Pa = 100\n"
+    "[[stage]]\nname = \"again\"\nkind = \"isotropic\"\npressure_Pa = 22e3\n";
+
+/// The run that is killed: stages, increments, snapshots, and checkpoints ten times a second. `more`: stages after the
+/// first.
 class Victim {
  public:
-  explicit Victim(const Folder& folder) : specimen_(folder / "s.h5"), protocol_(folder / "p.toml") {
+  Victim(const Folder& folder, const std::string& more, const std::string& to_strain)
+      : specimen_(folder / "s.h5"), protocol_(folder / "p.toml") {
     io::write_specimen(reference_specimen("dense_p20"), specimen_);
     write_bytes(protocol_,
                 "[test]\nname = \"victim\"\n[output]\nsnapshots_every = 25\n"
-                "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 22e3\nrecord = true\n"
-                "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n"
-                "[[stage]]\nname = \"shear\"\nkind = \"compression\"\nto_strain = 0.08\nlateral_pressure_Pa = 22e3\n");
+                "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 22e3\nrecord = true\n" +
+                    more +
+                    "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n"
+                    "[[stage]]\nname = \"shear\"\nkind = \"compression\"\nlateral_pressure_Pa = 22e3\nto_strain = " +
+                    to_strain + "\n");
   }
 
   std::vector<std::string> command(const std::string& output) const {
@@ -140,14 +150,12 @@ std::string kill_and_resume(const Victim& victim, const Folder& folder, const st
   return different.empty() ? "" : different + " differs from the undisturbed run";
 }
 
-}  // namespace
-
-TEST_CASE("killed at any moment, a run loses nothing that was recorded and ends as the undisturbed one", "[slow]") {
-  const char* const wanted = std::getenv("RVELAB_KILLS");
-  const int kills = wanted != nullptr ? std::atoi(wanted) : 50;
+/// RVELAB_KILLS, or `kills` of them, in many runs of a victim.
+void kill_often(const std::string& stages, const std::string& to_strain, int kills) {
+  if (const char* const wanted = std::getenv("RVELAB_KILLS")) kills = std::atoi(wanted);
   REQUIRE(kills > 0);
   const Folder folder;
-  Victim victim(folder);
+  Victim victim(folder, stages, to_strain);
   const std::string reference = folder / "reference.h5";
   const double seconds = victim.run_undisturbed(folder, reference);
   {
@@ -183,4 +191,14 @@ TEST_CASE("killed at any moment, a run loses nothing that was recorded and ends 
   for (const std::string& failure : tally.failures) FAIL_CHECK(failure);
   CHECK(tally.kills >= kills);
   CHECK(tally.aimed * 2 >= kills);
+}
+
+}  // namespace
+
+TEST_CASE("killed at any moment, a run loses nothing that was recorded and ends as the undisturbed one", "[slow]") {
+  kill_often("", "0.08", 50);
+}
+
+TEST_CASE("so does a run whose grains have bonds, which break, and bridges of water", "[slow]") {
+  kill_often(cement_and_water, "0.006", 12);
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "rvelab/protocol/cementation.hpp"
 #include "rvelab/ranks/ranked_pool.hpp"
 #include "tests/catch.hpp"
 #include "tests/specimens.hpp"
@@ -51,6 +52,24 @@ inline const Specimen& packed(int side) {
   Rve rve(disordered(Shape::disc, side, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.515, 1));
   rve.relax(1e-5, 100'000);
   rve.take_as_reference();
+  return made.emplace(side, rve.specimen()).first->second;
+}
+
+/// Packed, with a bond at each pair that touches, which break early, and bridges of water.
+inline const Specimen& cemented(int side) {
+  static std::map<int, Specimen> made;
+  if (const auto found = made.find(side); found != made.end()) return found->second;
+  Rve rve(packed(side));
+  protocol::Cementation cement;
+  cement.gap = 0.1;
+  cement.young_modulus = 1e6;
+  cement.tensile_strength = cement.cohesion = 500;
+  cement.strength_scatter = 0.5;
+  rve.set_interactions(protocol::cemented(rve, cement));
+  Water water;
+  water.suction = 10;
+  rve.set_water(water);
+  rve.relax(1e-5, 100'000);
   return made.emplace(side, rve.specimen()).first->second;
 }
 

@@ -20,8 +20,9 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
       std::vector<std::int64_t> ids;
       for (const int side : {4, 8, 5}) {  // of unlike cost
         std::vector<std::int64_t> here(5), there(5);
-        one.spawn(one.add_template(packed(side)), 5, here.data());
-        spread->spawn(spread->add_template(packed(side)), 5, there.data());
+        const Specimen& start = side == 5 ? cemented(side) : packed(side);
+        one.spawn(one.add_template(start), 5, here.data());
+        spread->spawn(spread->add_template(start), 5, there.data());
         // the tag is that of the pool; generation and slot are the same
         for (std::size_t k = 0; k < 5; ++k) {
           CHECK(pool::Id::of(here[k]).slot == pool::Id::of(there[k]).slot);
@@ -105,8 +106,8 @@ TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a 
     pool::ThreadedPool one(one_thread());
     const auto spread = over(ranks, one_thread());
     std::vector<std::int64_t> here(5), there(5);
-    one.spawn(one.add_template(packed(5)), 5, here.data());
-    spread->spawn(spread->add_template(packed(5)), 5, there.data());
+    one.spawn(one.add_template(cemented(5)), 5, here.data());
+    spread->spawn(spread->add_template(cemented(5)), 5, there.data());
     const double p = one.info(here[0]).p;
     std::vector<double> strain(9 * 15), stress(9 * 15), value(15), scale(15);
     for (std::size_t m = 0; m < 5; ++m) {  // sigma_xx held, eps_yy and eps_xy given

@@ -2,8 +2,9 @@
 """A film of grains and force chains, or of fields: film.py R.h5|RUN -o film.mp4 (or film.gif).
 
 Of a record file, its snapshots (run the test with --set output.snapshots_every=10) and its end: grains and force chains
-(--field chains), or grains coloured by their mean stress (--field p), and below q/p against the strain of the
-stage with the state of the frame marked. Of a folder that rvelab-mpm wrote, any field of its material points (--field eps_q, ...).
+(--field chains), grains coloured by their mean stress (--field p), or bonds and where they broke (--field bonds, drawn as by
+bonds.py), and below q/p against the strain of the stage with the state of the frame marked. Of a folder that rvelab-mpm
+wrote, any field of its material points (--field eps_q, ...).
 MP4 (H.264) is made by ffmpeg, GIF by Pillow; without -o MP4 where ffmpeg is there.
 """
 
@@ -13,13 +14,14 @@ import shutil
 import subprocess
 
 import records  # first: it says which package is missing
+import bonds
 import chains
 import state as states
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PatchCollection
 
-FIELDS = ("chains", "p")  # of grains
+FIELDS = ("chains", "p", "bonds")  # of grains
 
 
 def picture_of(figure):
@@ -129,6 +131,10 @@ def pictures_of_grains(path, field):
         found.pop()
     if len(found) < 2:
         raise ValueError(f"{path}: holds one state and no snapshots; run the test with --set output.snapshots_every=10")
+    if field == "bonds":
+        found = [state for state in found if len(state.bonds.broken)]  # those after the cement
+        if not found:
+            raise ValueError(f"{path}: holds no bonds; run a test with a [[stage]] of kind = \"cement\"")
     stages = records.stages_of(path)
     box, largest = box_of(found), largest_pressure(found)
     scale, _ = chains.unit_of(found[0])
@@ -139,6 +145,10 @@ def pictures_of_grains(path, field):
         if field == "chains":
             mean, _ = chains.draw_network(above, state)
             above.set_title(f"normal forces, mean {chains.force_in_words(mean)}", fontsize=9, loc="left")
+        elif field == "bonds":
+            bonds.draw_bonds(above, state)
+            intact, tension, shear = bonds.counts(state)
+            above.set_title(f"bonds: {intact} intact (grey), {tension} broken in tension (red), {shear} in shear (blue)", fontsize=9, loc="left")
         else:
             figure.colorbar(draw_pressures(above, state, largest), ax=above, label="mean stress of the grain (kPa)")
         above.set_xlim(*scale * box[:, 0])
@@ -192,6 +202,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="film.py", description=__doc__.splitlines()[0])
     parser.add_argument("records", nargs="+", metavar="R.h5|RUN", help="record file, or folder of rvelab-mpm")
     parser.add_argument("-o", "--output", help="film to write, *.mp4 or *.gif")
-    parser.add_argument("--field", default="chains", help="chains (default), p; of rvelab-mpm eps_q (default), ...")
+    parser.add_argument("--field", default="chains", help="chains (default), p, bonds; of rvelab-mpm eps_q (default), ...")
     parser.add_argument("--fps", type=between_1_and_60, default=10, help="frames a second, default 10")
     records.run(draw, parser, read=read)

@@ -17,6 +17,17 @@ import numpy as np
 
 
 @dataclass
+class Bonds:
+    """Bonds of a state, broken ones too."""
+
+    begin: np.ndarray  # (b, d) m, centre of the first grain
+    branch: np.ndarray  # (b, d) m, from the first grain to the image of the second
+    length: np.ndarray  # (b,) m, as it was made
+    radius: np.ndarray  # (b,) m
+    broken: np.ndarray  # (b,) 0: intact, 1: in tension, 2: in shear
+
+
+@dataclass
 class State:
     """Laboratory frame, SI. Grains lie in the parallelepiped of the cell vectors around the origin."""
 
@@ -35,6 +46,7 @@ class State:
     branch: np.ndarray  # (c, d) m, from the first grain to the image of the second
     normal: np.ndarray  # (c, d) unit vectors from the first grain to the second; None where it was not read
     normal_force: np.ndarray  # (c,) N, compression positive
+    bonds: Bonds
 
     @property
     def mean_diameter(self):
@@ -124,7 +136,16 @@ def state_of(path, exported, record, strain):
     normal = branch / np.maximum(np.linalg.norm(branch, axis=1, keepdims=True), 1e-300)
     stress = -grains["stress_Pa"][()].reshape(-1, 3, 3)[:, :d, :d]
     return State(str(path), record, strain, d, cell, position, radius, axes, angle, ellipses, stress, begin, branch,
-                 None if ellipses else normal, force)
+                 None if ellipses else normal, force, bonds_of(exported, d))
+
+
+def bonds_of(exported, d):
+    """The bonds of a state, none where it has none."""
+    if "bonds" not in exported:
+        return Bonds(np.zeros((0, d)), np.zeros((0, d)), *(np.zeros(0) for _ in range(3)))
+    bonds = exported["bonds"]
+    points = bonds["points_m"][()][:, :d]
+    return Bonds(points[0::2], points[1::2] - points[0::2], *(bonds[name][()] for name in ("length_m", "radius_m", "broken")))
 
 
 def normals_of_ellipses(path):

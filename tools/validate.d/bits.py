@@ -22,7 +22,8 @@ import numpy as np
 DATA = pathlib.Path(__file__).resolve().parents[2] / "tests" / "data"
 STATE = ("cell/lattice_m", "cell/rotation", "grains/id", "grains/position_m", "grains/velocity", "grains/spin",
          "contacts/i", "contacts/j", "contacts/image", "contacts/tangential_force_N", "contacts/rolling_moment_N_m",
-         "contacts/last_root_overlap_m0_5")
+         "contacts/last_root_overlap_m0_5", "bonds/i", "bonds/j", "bonds/broken", "bonds/released_energy_J", "bonds/shear_force_N",
+         "bonds/bending_moment_N_m", "bonds/twisting_moment_N_m", "bridges/i", "bridges/j", "bridges/image", "bridges/pull_0")
 RECORDS = ("strain", "deformation_gradient", "stress_Pa", "void_ratio", "coordination_number", "sliding_fraction",
            "fabric_anisotropy", "unbalanced_force_ratio", "inertial_number", "held_error", "substeps")
 
@@ -45,6 +46,10 @@ TESTS = [
     ("held stress at a rate", "simple_shear_drained", DENSE,
      ["stage.shear.to_strain=0.01", "loading.mode=at_rate", "loading.inertial_number=1e-2"]),
     ("probe", "probe", DENSE, []),
+    ("cemented discs that break", "biaxial_cemented", DENSE, ["stage.compression.to_strain=0.01"]),
+    ("cemented spheres", "triaxial_cemented", "yade/hertz", ["stage.compression.to_strain=0.002"]),
+    ("moist spheres", "unsaturated_shear", "yade/hertz",
+     ["test.pressure_Pa=100e3", "stage.water.suction_Pa=200", "stage.compression.to_strain=0.002"]),
 ]
 
 

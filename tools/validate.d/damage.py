@@ -2,7 +2,7 @@
 """Single flipped bits in every kind of file that is read: damage.py PROGRAM [NUMBER].
 
 Packs a specimen, runs a test on it, exports CSV, and flips one bit at a time, seeded, NUMBER (1000) in each file:
-specimen, records, a pool, a journal without its record file. Each must be refused (exit code 2, one line) or leave what
+specimen, records, a pool, a journal without its record file; records and a pool of cemented, moist grains too. Each must be refused (exit code 2, one line) or leave what
 `inspect --json` prints as it is; of a journal the whole frames before the flip are taken, and stand for fewer records.
 The files of `import` have no checksum: there only crashes, endless runs and messages of several lines are counted as bad.
 """
@@ -17,6 +17,10 @@ import time
 
 TEST = '[test]\nname = "small"\n[output]\nsnapshots_every = 2\n[[stage]]\nkind = "simple_shear"\nto_strain = 1e-3\n' \
        'record_every = 2e-4\n'
+
+CEMENTED = '[test]\nname = "cemented and moist"\n[[stage]]\nkind = "cement"\nyoung_modulus_Pa = 50e6\n' \
+           'tensile_strength_Pa = 50e3\ncohesion_Pa = 50e3\n[[stage]]\nkind = "water"\nsuction_Pa = 100\n' \
+           '[[stage]]\nkind = "simple_shear"\nto_strain = 5e-3\nrecord_every = 1e-3\n'
 
 
 def answer(command):
@@ -71,13 +75,13 @@ def journal_of(program, work):
     return journal
 
 
-def pool_of(program, work):
+def pool_of(program, work, source, name):
     """A pool file of one RVE, by the Python package."""
     root = pathlib.Path(__file__).resolve().parents[2]
-    subprocess.run([sys.executable, "-c", "import rvelab; rvelab.Rve('S.h5').save('P.h5')"], cwd=work, check=True,
+    subprocess.run([sys.executable, "-c", f"import rvelab; rvelab.Rve('{source}').save('{name}')"], cwd=work, check=True,
                    env={**os.environ, "PYTHONPATH": str(root / "tools/python"),
                         "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
-    return work / "P.h5"
+    return work / name
 
 
 def main():
@@ -86,16 +90,19 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         (work / "small.toml").write_text(TEST)
+        (work / "cemented.toml").write_text(CEMENTED)
         for words in (["pack", "pack_dense", "-o", "S.h5", "--set", "pack.number=64"],
                       ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
+                      ["run", "cemented.toml", "--specimen", "S.h5", "-o", "C.h5"],
                       ["export", "S.h5", "--format", "csv", "-o", "E"]):
             subprocess.run([program, *words], cwd=work, check=True, capture_output=True)
         damaged = work / "damaged.h5"
         inspect = [program, "inspect", damaged, "--json"]
-        for path in (work / "S.h5", work / "R.h5"):
+        for path in (work / "S.h5", work / "R.h5", work / "C.h5"):
             good &= flip(inspect, path, number, True, damaged)
-        pool = pool_of(program, work)
-        good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
+        for source, name in (("S.h5", "P.h5"), ("C.h5", "PC.h5")):
+            pool = pool_of(program, work, source, name)
+            good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
         damaged.unlink()
         good &= flip(inspect, journal_of(program, work), number, False, work / "damaged.h5.journal")
         tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]

@@ -161,6 +161,11 @@ class Series {
       append(points, cell.rotation * from);
       append(points, cell.rotation * (from + (at[j] + translation(cell, item.image) - at[i])));
     }
+    const auto tangent_of = [&](const Interaction<Law>& item) -> Vector3 {
+      const Vector3 n =
+          (at[std::size_t(item.j)] + translation(cell, item.image) - at[std::size_t(item.i)]).stableNormalized();
+      return {-n.y(), n.x(), 0};
+    };
     begin(Law::name, lines(Law::name, items.size()), points);
     std::size_t field = 0;
     each_field<Law>(items.front(), [&](const InteractionField& described, const auto&) {
@@ -171,6 +176,8 @@ class Series {
           if (k++ != field) return;
           if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
             values.push_back(value);
+          else if (described.turning == Turning::tangent && cell.dimension == 2)  // a component; arrows need the vector
+            append(values, cell.rotation * (value[0] * tangent_of(item)));
           else
             append(values, in_laboratory(described, value, cell));
         });

@@ -1,0 +1,261 @@
+#!/usr/bin/python3
+"""Cemented grains in ensembles: cemented.py RVELAB WORK [FIGURE] [--count N].
+
+Five specimens each of 400 discs (pack_dense, biaxial) and of 500 spheres (triaxial), cemented by `kind = "cement"` with tensile
+strength and cohesion of the cement alike, at several strengths and pressures; beside each the same specimens without cement.
+Per specimen and strength a straight envelope of the peak circles, sigma_1 = 2 c sqrt(k) + k sigma_3 with
+k = (1 + sin phi)/(1 - sin phi): cohesion c and friction angle phi, mean +- standard error over the specimens; then strain and
+sharpness of the peak, when the volume grows fastest, and bonds broken by mode.
+
+Published statements that stand beside them, with limits as set before the runs:
+  Clough, Rad, Bachus, Sitar 1981 (J. Geotech. Eng. Div. 107, 799-817), 137 tests: friction angles similar to those of uncemented sand,
+  with a cohesion intercept;
+  Consoli 2014 (Eng. Geol. 169, 61-68): the friction angle does not depend on the amount of cement, c is a direct function of strength;
+  Collins and Sitar 2009 (J. Geotech. Geoenviron. Eng. 135): brittle; the envelope is curved, of less friction at higher confinement;
+  Jiang, Zhang, Sun, Utili 2013 (Granul. Matter 15, 65-84), DEM in the plane: strength and dilation grow with bond strength, over pressure;
+  Wang and Leung 2008, as those report: with more cement hardening becomes softening, contraction dilation;
+  de Bono, McDowell, Wanatowski 2014 (Granul. Matter 16, 563-572), of laboratory studies: cement lowers the strain of the peak.
+"""
+import argparse
+import pathlib
+import subprocess
+
+import h5py
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from verdict import tell_verdicts
+from verdict import verdict as row_of_verdict
+
+PROTOCOLS = pathlib.Path("protocols").resolve()
+BIAXIAL = {"protocol": "biaxial_cemented", "pack": ["pack_dense"], "pressures": (20e3, 40e3, 80e3, 160e3), "axis": 1,
+           "strengths": (0, 100e3, 200e3, 400e3), "set": [], "what": "400 discs"}
+TRIAXIAL = {"protocol": "triaxial_cemented", "pack": ["pack_hertz", "--set", "pack.number=500", "--set", "material.young_modulus_Pa=1e9"],
+            "pressures": (50e3, 100e3, 200e3), "axis": 2, "strengths": (0, 200e3, 400e3),
+            "set": ["--set", "stage.compression.record_every=0.0005"], "what": "500 spheres"}
+
+
+def verdict(*words):
+    row_of_verdict(*words, width=98)
+
+
+def specimens(program, work, test, count):
+    files = [work / f"{test['protocol']}_{k}.h5" for k in range(1, count + 1)]
+    for seed, path in enumerate(files, 1):
+        if not path.exists():
+            subprocess.run([program, "pack", *test["pack"], "-o", path, "--set", f"pack.seed={seed}"], check=True,
+                           capture_output=True)
+    return files
+
+
+def without_cement(work, test):
+    """The protocol of `test` less its stage of cement."""
+    stages = (PROTOCOLS / f"{test['protocol']}.toml").read_text().split("[[stage]]")
+    path = work / f"{test['protocol']}_dry.toml"
+    path.write_text("[[stage]]".join(each for each in stages if 'kind = "cement"' not in each))
+    return path
+
+
+def run(program, work, test, specimen, pressure, strength, young_modulus=50e6):
+    """Records of the compression."""
+    stiff = "" if young_modulus == 50e6 else f"_{young_modulus:g}"
+    out = work / f"{specimen.stem}_{pressure:g}_{strength:g}{stiff}_records.h5"
+    settings = ["--set", f"test.pressure_Pa={pressure:g}", *test["set"]]
+    protocol = without_cement(work, test) if strength == 0 else PROTOCOLS / f"{test['protocol']}.toml"
+    if strength > 0:
+        settings += ["--set", f"stage.cement.tensile_strength_Pa={strength:g}", "--set", f"stage.cement.cohesion_Pa={strength:g}",
+                     "--set", f"stage.cement.young_modulus_Pa={young_modulus:g}"]
+    if not out.exists():
+        done = subprocess.run([program, "run", protocol, "--specimen", specimen, "-o", out, *settings], capture_output=True, text=True)
+        if not out.exists():
+            raise SystemExit(f"{out}: {done.stderr}")
+    return curve(out, test["axis"])
+
+
+def curve(path, axis):
+    """Of one test: arrays of strain, sigma_1, sigma_3, volume strain (expansion positive), broken bonds."""
+    with h5py.File(path) as file:
+        records = file["records"]
+        stage = records["stage"][:]
+        last = stage == stage.max()
+        stress = -records["stress_Pa"][:][last]
+        dimension = 2 if axis == 1 else 3
+        side = [k for k in range(dimension) if k != axis]
+        void_ratio = records["void_ratio"][:][last]
+        read = {name: records[name][:][last] for name in ("bonds", "bonds_broken_in_tension", "bonds_broken_in_shear")}
+        return {"strain": records["strain"][:][last], "sigma_1": stress[:, axis, axis],
+                "sigma_3": stress[:, side, side].mean(axis=1), "eps_v": (void_ratio - void_ratio[0]) / (1 + void_ratio[0]), **read}
+
+
+def smoothed(values, width):
+    """Moving mean, which a single avalanche does not decide."""
+    room = np.pad(values, width // 2, mode="edge")
+    return np.convolve(room, np.ones(width) / width, mode="valid")[:len(values)]
+
+
+def measures(found):
+    strain, q = found["strain"], found["sigma_1"] - found["sigma_3"]
+    peak = int(np.argmax(q))
+    every = strain[1] - strain[0]
+    width = max(3, int(round(0.002 / every)) // 2 * 2 + 1)  # 0.2 % of strain
+    rate = np.gradient(smoothed(found["eps_v"], width), strain)
+    broken = found["bonds_broken_in_tension"] + found["bonds_broken_in_shear"]
+    whole = max(1, found["bonds"][0])
+    late = q[strain > 0.04].mean()
+    return {"curve": found, "sigma_1": found["sigma_1"][peak], "sigma_3": found["sigma_3"][peak], "strain": strain[peak], "q": q[peak], "late": late,
+            "brittleness": q[peak] / late - 1, "dilation": rate.max(), "dilation_strain": strain[int(np.argmax(rate))],
+            "volume": found["eps_v"][-1], "tension": found["bonds_broken_in_tension"][-1] / whole,
+            "shear": found["bonds_broken_in_shear"][-1] / whole, "at_peak": broken[peak] / whole}
+
+
+def envelope(rows):
+    """Cohesion (Pa) and friction angle (degrees) of the peaks of one specimen."""
+    k, b = np.polyfit([row["sigma_3"] for row in rows], [row["sigma_1"] for row in rows], 1)
+    return b / (2 * np.sqrt(k)), np.degrees(np.arcsin((k - 1) / (k + 1)))
+
+
+def over(values):
+    values = np.asarray(values, float)
+    return values.mean(), values.std(ddof=1) / np.sqrt(len(values))
+
+
+def told(values, scale=1.0, digits=1):
+    mean, error = over(np.asarray(values) * scale)
+    return f"{mean:.{digits}f} +- {error:.{digits}f}"
+
+
+def family(program, work, test, count):
+    """All tests of one kind; prints their tables. Per strength: c, phi of each specimen; rows by strength, pressure."""
+    files = specimens(program, work, test, count)
+    rows = {(s, p): [measures(run(program, work, test, each, p, s)) for each in files]
+            for s in test["strengths"] for p in test["pressures"]}
+    print(f"\n{test['protocol']}, {count} specimens of {test['what']}, mean +- standard error of the mean\n")
+    print("strength  pressure  q peak, kPa      strain of the peak, %  q peak/late - 1  fastest dilation at, %  its rate        "
+          "broken at peak, %  in tension, in shear at 5 %")
+    for (s, p), each in rows.items():
+        column = {name: [row[name] for row in each] for name in each[0]}
+        print(f"{s / 1e3:6.0f}    {p / 1e3:6.0f}    {told(column['q'], 1e-3):15s}  {told(column['strain'], 100, 2):21s}  "
+              f"{told(column['brittleness'], 1, 2):15s}  {told(column['dilation_strain'], 100, 2):22s}  "
+              f"{told(column['dilation'], 1, 2):14s}  {told(column['at_peak'], 100):17s}  "
+              f"{told(column['tension'], 100)}, {told(column['shear'], 100)}")
+    envelopes = {s: [envelope([rows[s, p][k] for p in test["pressures"]]) for k in range(count)] for s in test["strengths"]}
+    print("\nstrength, kPa  c, kPa           phi, degrees     c over strength")
+    for s, each in envelopes.items():
+        c, phi = zip(*each)
+        print(f"{s / 1e3:6.0f}         {told(c, 1e-3):15s}  {told(phi):15s}  {'' if s == 0 else told(np.array(c) / s, 1, 3)}")
+    print()
+    # The strongest cement at the ratios of pressure to strength of the weakest.
+    weakest, strongest = test["strengths"][1], test["strengths"][-1]
+    high = [p * strongest / weakest for p in test["pressures"]]
+    similar = [envelope([measures(run(program, work, test, each, p, strongest)) for p in high]) for each in files]
+    # And as stiff as it should be for its strength.
+    stiff = [measures(run(program, work, test, each, test["pressures"][0], strongest, 200e6))["strain"] for each in files]
+    return rows, envelopes, similar, stiff
+
+
+def judge(name, test, rows, envelopes, similar, stiff, count):
+    strengths, low = test["strengths"], test["pressures"][0]
+    cohesion = np.array([[each[0] for each in envelopes[s]] for s in strengths])
+    angle = np.array([[each[1] for each in envelopes[s]] for s in strengths])
+    ordered = int((np.diff(cohesion, axis=0) > 0).all(axis=0).sum())
+    verdict(f"{name}: cohesion grows with bond strength (Clough; Consoli; Jiang)", f"in {ordered} of {count}", f"in all {count}", ordered == count)
+    ratio = cohesion[1:].mean(axis=1) / np.array(strengths[1:])
+    verdict(f"{name}: c in proportion to strength (Consoli): largest c/strength over smallest", f"{ratio.max() / ratio.min():.2f}",
+            "at most 1.3", ratio.max() / ratio.min() <= 1.3)
+    weakest, strongest = strengths[1], strengths[-1]
+    scaled = np.array([[each[1] for each in similar]]).mean()
+    gap = scaled - angle[1].mean()
+    cause = (f"bonds of {strongest / 1e3:.0f} kPa at these pressures are on the steep part of a curved envelope (Collins and Sitar); at pressures "
+             f"{strongest / weakest:.0f} times as high, of the same part of their strength as for {weakest / 1e3:.0f} kPa, phi is {scaled:.1f}, "
+             f"{gap:+.1f} from that of {weakest / 1e3:.0f} kPa")
+    change = angle[1:].mean(axis=1) - angle[0].mean()
+    error = max(over(angle[k] - angle[0])[1] for k in range(1, len(strengths)))
+    verdict(f"{name}: phi beside that without cement (Clough: similar), largest change, degrees",
+            f"{change[np.argmax(abs(change))]:+.1f} +- {error:.1f}", "within 5", abs(change).max() <= 5, abs(gap) <= 3, cause)
+    spread = np.ptp(angle[1:].mean(axis=1))
+    verdict(f"{name}: phi between bond strengths (Consoli: independent), degrees", f"{spread:.1f}", "within 3", spread <= 3, abs(gap) <= 3, cause)
+    mean = lambda what, s, p: np.mean([row[what] for row in rows[s, p]])
+    brittle = [mean("brittleness", s, low) for s in strengths]
+    verdict(f"{name}: softening after the peak grows with strength (Wang and Leung; Jiang)",
+            ", ".join(f"{each:.2f}" for each in brittle), "rising", bool((np.diff(brittle) > 0).all()))
+    by_pressure = [mean("brittleness", strongest, p) for p in test["pressures"]]
+    verdict(f"{name}: and falls with pressure (Jiang)", ", ".join(f"{each:.2f}" for each in by_pressure),
+            "falling", bool((np.diff(by_pressure) < 0).all()))
+    peaks = [mean("strain", s, low) for s in strengths]
+    verdict(f"{name}: strain of the peak below that without cement (de Bono et al.), %",
+            ", ".join(f"{100 * each:.2f}" for each in peaks), "all below the first", max(peaks[1:]) < peaks[0],
+            np.mean(stiff) < peaks[0], f"the peak is at some {strongest / 1e3:.0f} kPa over the stiffness of the cement, 50 MPa for all strengths; with 200 MPa, as "
+            f"stronger cement is stiffer too, it is at {100 * np.mean(stiff):.2f} %")
+    after = [row["dilation_strain"] > row["strain"] for s in strengths[1:] for p in test["pressures"] for row in rows[s, p]]
+    verdict(f"{name}: the volume grows fastest after the peak", f"{sum(after)} of {len(after)} tests",
+            "9 of 10 tests", sum(after) >= 0.9 * len(after))
+    rates = [mean("dilation", s, low) for s in strengths]
+    verdict(f"{name}: rate of dilation grows with strength (Jiang)", ", ".join(f"{each:.2f}" for each in rates), "rising",
+            bool((np.diff(rates) > 0).all()))
+
+
+def draw(path, families):
+    """q and volume over strain at the lowest pressure, envelopes of the peaks, broken bonds by mode; a row for each family."""
+    figure, grid = plt.subplots(len(families), 4, figsize=(16, 3.9 * len(families)), layout="constrained", squeeze=False)
+    for axes, (name, test, rows, envelopes) in zip(grid, families):
+        low = test["pressures"][0]
+        for k, strength in enumerate(test["strengths"]):
+            colour = plt.cm.viridis(0.85 * k / (len(test["strengths"]) - 1))
+            label = f"bonds of {strength / 1e3:.0f} kPa" if strength else "no cement"
+            curves = [row["curve"] for row in rows[strength, low]]
+            length = min(len(each["strain"]) for each in curves)
+            strain = 100 * curves[0]["strain"][:length]
+            for axis, values in ((axes[0], [(each["sigma_1"] - each["sigma_3"])[:length] / 1e3 for each in curves]),
+                                 (axes[1], [100 * each["eps_v"][:length] for each in curves])):
+                axis.plot(strain, np.mean(values, axis=0), color=colour, label=label)
+                axis.fill_between(strain, np.min(values, axis=0), np.max(values, axis=0), color=colour, alpha=0.18, linewidth=0)
+            peaks = np.array([[row["sigma_3"], row["sigma_1"]] for p in test["pressures"] for row in rows[strength, p]]) / 1e3
+            axes[2].plot(*peaks.T, ".", color=colour, markersize=4)
+            c, phi = np.mean(envelopes[strength], axis=0)
+            slope = (1 + np.sin(np.radians(phi))) / (1 - np.sin(np.radians(phi)))
+            along = np.array([0, peaks[:, 0].max()])
+            axes[2].plot(along, 2 * c / 1e3 * np.sqrt(slope) + slope * along, color=colour, linewidth=1)
+            if strength:
+                whole = [each["bonds"][0] for each in curves]
+                for mode, style in (("tension", "-"), ("shear", "--")):
+                    axes[3].plot(strain, 100 * np.mean([each[f"bonds_broken_in_{mode}"][:length] / n for each, n in zip(curves, whole)], axis=0),
+                                 style, color=colour, label=f"{strength / 1e3:.0f} kPa, {mode}")
+        for axis, what in ((axes[0], "q (kPa)"), (axes[1], "volume strain (%), expansion"), (axes[3], "broken bonds (%)")):
+            axis.set_xlabel("axial strain (%)")
+            axis.set_ylabel(what)
+        axes[0].set_title(f"{name}, {low / 1e3:.0f} kPa: mean and range of {len(curves)}", fontsize=10, loc="left")
+        axes[2].set_title("peaks and envelopes", fontsize=10, loc="left")
+        axes[2].set_xlabel(r"$\sigma_3$ (kPa)")
+        axes[2].set_ylabel(r"$\sigma_1$ (kPa)")
+        axes[2].set_xlim(left=0)
+        axes[2].set_ylim(bottom=0)
+        axes[0].legend(fontsize=8)
+        axes[3].legend(fontsize=7, loc="center right")
+        axes[3].set_ylim(bottom=0)
+        axes[3].set_xlim(right=7.5)
+    figure.savefig(path, dpi=80)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("work", type=pathlib.Path)
+    parser.add_argument("figure", nargs="?")
+    parser.add_argument("--count", type=int, default=5)
+    options = parser.parse_args()
+    program = str(pathlib.Path(options.program).resolve())
+    options.work.mkdir(parents=True, exist_ok=True)
+    families = []
+    for name, test in (("discs", BIAXIAL), ("spheres", TRIAXIAL)):
+        rows, envelopes, similar, stiff = family(program, options.work, test, options.count)
+        judge(name, test, rows, envelopes, similar, stiff, options.count)
+        families.append((name, test, rows, envelopes))
+    if options.figure:
+        draw(options.figure, families)
+    tell_verdicts()
+
+
+if __name__ == "__main__":
+    main()
