@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rvelab/grains/uniform.hpp"
+#include "rvelab/protocol/pair_numbers.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 
 namespace rvelab::protocol {
@@ -12,20 +12,6 @@ namespace rvelab::protocol {
 namespace {
 
 using Bond = Interaction<ParallelBond>;
-
-/// Numbers of a pair, whatever the order of the list: of its ids, and of the image as the lower id sees it.
-Uniform numbers_of(const Specimen& s, const Bond& bond, std::uint64_t seed) {
-  std::uint64_t stream = 0;
-  const auto mix = [&](std::int64_t value) {
-    stream = (stream ^ std::uint64_t(value)) * 0x9e3779b97f4a7c15ULL;
-    stream ^= stream >> 32;
-  };
-  mix(s.grains.id[std::size_t(bond.i)]);
-  mix(s.grains.id[std::size_t(bond.j)]);
-  // Not the image itself: it goes with where the grains were wrapped. Of several images of one pair each has its
-  // branch.
-  return Uniform(seed, stream | 1);
-}
 
 }  // namespace
 
@@ -75,7 +61,7 @@ Interactions cemented(const Rve& rve, const Cementation& cement) {
     const auto i = std::size_t(bond.i), j = std::size_t(bond.j);
     const double length = (s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i]).norm();
     const double smaller = std::min(radius[i], radius[j]);
-    Uniform draw = numbers_of(s, bond, cement.seed);
+    Uniform draw = numbers_of_pair(s, bond, cement.seed, Draw::cement);
     if (length - (radius[i] + radius[j]) > cement.gap * smaller || !(draw() < cement.share)) continue;
     const double kn = cement.young_modulus / (radius[i] + radius[j]),
                  strength = modulus > 0 ? weibull_factor(modulus, draw()) : 1.0;

@@ -56,12 +56,13 @@ using MakeStage = std::unique_ptr<StageKind>();
 
 // Each in stage_NAME.cpp.
 MakeStage isotropic_kind, compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind, path_kind,
-    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind, water_kind;
+    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind, water_kind, dissolve_kind;
 
 /// Every kind, in the order in which keys and messages list them.
-inline constexpr MakeStage* stage_kinds[] = {
-    isotropic_kind,   compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind, path_kind, flow_kind,
-    deformation_kind, envelope_kind,    relax_kind,        probe_kind,         cement_kind,     water_kind};
+inline constexpr MakeStage* stage_kinds[] = {isotropic_kind,  compression_kind, simple_shear_kind, pressure_path_kind,
+                                             deviatoric_kind, path_kind,        flow_kind,         deformation_kind,
+                                             envelope_kind,   relax_kind,       probe_kind,        cement_kind,
+                                             water_kind,      dissolve_kind};
 
 /// A stage of the kind of this name. std::logic_error if there is none.
 std::unique_ptr<StageKind> stage_of_kind(const std::string& name);

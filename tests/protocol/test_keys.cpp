@@ -103,6 +103,10 @@ cohesion_Pa = 1e5
 [[stage]]
 kind = "water"
 suction_Pa = 1e3
+[[stage]]
+kind = "dissolve"
+radius_left = 0.5
+hold = "axial_stress"
 )";
 
 /// A value of a key's kind and range, as an assignment writes it.
