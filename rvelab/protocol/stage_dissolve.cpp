@@ -81,7 +81,7 @@ struct Dissolve : KindOf<DissolveSettings> {
       }
       while (at.phase != dissolving) come_to_rest(test, held);
       Report report;
-      report.unbalanced_ratio = test.rve.unbalanced_ratio();
+      report.unbalanced_ratio = at.unbalanced_ratio;
       report.held_error = missed(at.stress, held);
       test.record(1 - at.deformation.determinant(), report);
       test.step_done();
