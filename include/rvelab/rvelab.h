@@ -370,6 +370,30 @@ int32_t rvelab_get_parameters(rvelab_pool* pool, int64_t id, char* text, size_t 
  * and range: the RVE is then as before. */
 int32_t rvelab_set_parameters(rvelab_pool* pool, int64_t id, const char* toml);
 
+/* ---- stages of a test, since 1.3 ----
+ *
+ * What the program does with a specimen, done with RVEs of a host: bonds and water are made, cement dissolves, pores
+ * are flooded, a pressure is reached. By the keys of protocols (`rvelab keys`), as text of TOML; [test] may be missing:
+ *
+ *   [[stage]]
+ *   kind = "cement"
+ *   young_modulus_Pa = 50e6
+ *   tensile_strength_Pa = 200e3
+ *   cohesion_Pa = 200e3
+ *
+ * By way of librvelab-h5.so. */
+
+/* Runs the stages, one after the other, on the committed state of each id; their end is its new state, with a new
+ * token; its trials are over, a pending one is reverted. The same bits as `rvelab run` on that specimen. Records are
+ * not kept; what the state then holds is in its arrays. The RVEs are shared out among the threads of the pool.
+ *
+ * sigma[9 n] or null: Pa, of the new states; status[n] or null. Returns the worst status as rvelab_trial does; an RVE
+ * that failed is as before, and its sigma stays. RVELAB_E_INPUT names line, key, value and range. RVELAB_DISCARD: a
+ * stage cannot be carried out (a stress that the grains do not bear, no rest); the text names it. What is wrong in the
+ * text by itself is an error before any work: n = 0 (ids null) checks a text alone. */
+int32_t rvelab_run_stages(rvelab_pool* pool, int64_t n, const int64_t* ids, const char* toml, double* sigma,
+                          int32_t* status);
+
 /* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
  * or made again are included. */
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps);

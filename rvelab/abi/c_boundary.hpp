@@ -64,6 +64,9 @@ void read_pool(pool::Pool& pool, const std::string& path);
 std::string parameters_text(const Specimen& specimen);
 /// InputError as keys::set_parameters.
 void set_parameters(Specimen& specimen, const std::string& text);
+/// As h5::check_stages and h5::run_stages.
+void check_stages(const std::string& text);
+std::int64_t run_stages(Specimen& specimen, const std::string& text);
 
 // librvelab.so makes the share of a rank for librvelab-mpi.so, of the same version, and hands its pool to the host. No
 // part of the interface of the host.

@@ -85,10 +85,26 @@ Specimen read_specimen(const std::string& path) {
 
 std::string parameters_text(const Specimen& specimen) { return file_calls().parameters_text(specimen); }
 
+namespace {
+
+/// toml++ ends the process where memory runs out while it unwinds, so what it will take is asked for before.
+void expect_memory_for(const std::string& text) { ::operator delete(::operator new((1 << 20) + 100 * text.size())); }
+
+}  // namespace
+
 void set_parameters(Specimen& specimen, const std::string& text) {
-  // toml++ ends the process where memory runs out while it unwinds, so what it will take is asked for before.
-  ::operator delete(::operator new((1 << 20) + 100 * text.size()));
+  expect_memory_for(text);
   file_calls().set_parameters(specimen, text);
+}
+
+void check_stages(const std::string& text) {
+  expect_memory_for(text);
+  file_calls().check_stages(text);
+}
+
+std::int64_t run_stages(Specimen& specimen, const std::string& text) {
+  expect_memory_for(text);
+  return file_calls().run_stages(specimen, text);
 }
 
 void write_pool(pool::Pool& pool, const std::string& path) {

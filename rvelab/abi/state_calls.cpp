@@ -4,6 +4,7 @@
 
 #include "rvelab/abi/c_boundary.hpp"
 #include "rvelab/abi/structs.hpp"
+#include "rvelab/pool/mixed.hpp"
 
 using namespace rvelab;
 using namespace rvelab::abi;
@@ -18,6 +19,18 @@ void copy_out(const char* call, std::span<const std::byte> bytes, void* buf, std
     throw pool::Refused(pool::Status::small_buffer, std::string(call) + ": cap is " + std::to_string(cap) +
                                                         " bytes; needed: " + std::to_string(bytes.size()));
   std::memcpy(buf, bytes.data(), bytes.size());
+}
+
+/// The committed state becomes what change(state) makes of it, which returns the grain-steps made; it has a new token,
+/// and no trial.
+template <class Change>
+void change(pool::Pool& rves, std::int64_t id, const Change& change) {
+  pool::RveState state = pool::rve_state_of(rves.at<&pool::Share::save>(id));
+  const std::int64_t token = state.tokens.committed(), made = change(state);
+  state.tokens.go_on();
+  state.last.error_estimate = 0;
+  const auto bytes = pool::to_bytes(state, to_bytes(state.specimen));
+  rves.at<&pool::Share::replace>(id, std::span<const std::byte>(bytes), token, made);
 }
 
 }  // namespace
@@ -108,13 +121,27 @@ int32_t rvelab_get_parameters(rvelab_pool* handle, int64_t id, char* text, size_
 
 int32_t rvelab_set_parameters(rvelab_pool* handle, int64_t id, const char* toml) {
   return of_pool(handle, {{toml, "toml"}}, [&](pool::Pool& rves) {
-    pool::RveState state = pool::rve_state_of(rves.at<&pool::Share::save>(id));
-    const std::int64_t token = state.tokens.committed();
-    set_parameters(state.specimen, toml);
-    state.tokens.go_on();
-    state.last.error_estimate = 0;
-    const auto bytes = pool::to_bytes(state, to_bytes(state.specimen));
-    rves.at<&pool::Share::replace>(id, std::span<const std::byte>(bytes), token);
+    change(rves, id, [&](pool::RveState& state) {
+      set_parameters(state.specimen, toml);
+      return std::int64_t(0);
+    });
+  });
+}
+
+int32_t rvelab_run_stages(rvelab_pool* handle, int64_t n, const int64_t* ids, const char* toml, double* sigma,
+                          int32_t* status) {
+  return of_pool(handle, {{toml, "toml"}}, [&](pool::Pool& rves) {
+    const auto asked = ids_of(n, ids);
+    check_stages(toml);
+    return pool::each_entry(rves, "run_stages", n, asked.data(), status, [&](std::size_t m, pool::Verdict&) {
+      change(rves, asked[m], [&](pool::RveState& state) {
+        state.last.inertial_number = 0;
+        return run_stages(state.specimen, toml);
+      });
+      if (sigma == nullptr) return;
+      const rvelab_info info = rves.at<&pool::Share::info>(asked[m]);
+      std::copy_n(info.sigma, 9, sigma + 9 * m);
+    });
   });
 }
 

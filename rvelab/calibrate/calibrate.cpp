@@ -84,12 +84,16 @@ namespace {
 void evaluate_specimens(Calibration& result) {
   std::map<std::size_t, std::vector<PrincipalStresses>> peaks;
   for (const PressureResult& test : result.per_pressure) peaks[test.specimen].push_back(test.peak);
-  std::vector<double> angles, factors;
+  std::vector<double> angles, factors, Nc, cohesions;
   for (const auto& [specimen, own] : peaks) {
     angles.push_back(strength_angle_deg(own, result.cohesive));
     factors.push_back(bearing_capacity_Nq(angles.back()));
-    result.per_specimen.push_back({angles.back(), factors.back()});
+    Nc.push_back(bearing_capacity_Nc(angles.back()));
+    cohesions.push_back(fit_with_cohesion(own).cohesion);
+    result.per_specimen.push_back({angles.back(), factors.back(), Nc.back(), cohesions.back()});
   }
+  result.Nc_of_specimens = statistics(Nc);
+  result.cohesion_of_specimens = statistics(cohesions);
   result.friction_angle_of_specimens = statistics(angles);
   result.Nq_of_specimens = statistics(factors);
 }
@@ -126,6 +130,7 @@ Calibration calibrate(const std::vector<records::TestResult>& tests, int dimensi
 }
 
 bool grains_stick(const Specimen& specimen) {
+  if (has_any(specimen)) return true;
   const bool may_stick =
       with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::has_law_constant; });
   return may_stick && std::any_of(specimen.materials.begin(), specimen.materials.end(), [](const Material& material) {

@@ -34,9 +34,10 @@ struct Statistics {
   double standard_error = 0;      ///< of the mean
 };
 
-/// Results of one specimen: least squares over its peaks, as Calibration::friction_angle_deg.
+/// Results of one specimen: least squares over its peaks, as those of Calibration.
 struct SpecimenResult {
-  double friction_angle_deg = 0, bearing_capacity_Nq = 0;
+  double friction_angle_deg = 0, bearing_capacity_Nq = 0, bearing_capacity_Nc = 0;
+  double cohesion = 0;  ///< Pa
 };
 
 /// Results of all tests. Degrees, Pa; NaN where the tests do not reach.
@@ -53,7 +54,7 @@ struct Calibration {
   double bearing_capacity_Nq = 0, bearing_capacity_Nc = 0, local_shear_Nq = 0, wedge_angle_deg = 0;
   std::vector<PressureResult> per_pressure;
   std::vector<SpecimenResult> per_specimen;  ///< specimens of one recipe with other seeds differ by degrees
-  Statistics friction_angle_of_specimens, Nq_of_specimens;
+  Statistics friction_angle_of_specimens, Nq_of_specimens, Nc_of_specimens, cohesion_of_specimens;
 };
 
 /// Mean, standard deviation and standard error of at least one value.
@@ -65,7 +66,8 @@ Statistics statistics(const std::vector<double>& values);
 Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
                       const std::vector<std::size_t>& specimens = {}, bool sticks = false);
 
-/// Whether the contacts of a specimen pull: its law has an adhesion, and a material gives one above 0.
+/// Whether the grains of a specimen stick: it has bonds, broken ones too, or water, or its contacts pull (its law has
+/// an adhesion, and a material gives one above 0).
 bool grains_stick(const Specimen& specimen);
 
 /// InputError unless the last stage gives a friction angle: compression at constant lateral stress or simple shear at

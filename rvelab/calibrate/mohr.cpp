@@ -49,13 +49,14 @@ Peak peak(std::span<const records::Record> records, int dimension) {
   for (std::size_t k = 0; k < records.size(); ++k) {
     const PrincipalStresses stresses = principal_stresses(records[k].stress, dimension);
     if (k == 0 || stresses.t() > highest.stresses.t()) highest = {k, records[k].strain, stresses};
+    if (highest.stresses.t() > 0) highest.left = stresses.t() / highest.stresses.t();
   }
   return highest;
 }
 
 bool rising_at_end(std::span<const records::Record> records, const Peak& peak) {
-  constexpr double end = 0.95;
-  return peak.record > 0 && std::abs(peak.strain) > end * std::abs(records.back().strain);
+  constexpr double end = 0.95, held = 0.9;
+  return peak.record > 0 && peak.left > held && std::abs(peak.strain) > end * std::abs(records.back().strain);
 }
 
 PrincipalStresses peak_of_moving_mean(std::span<const records::Record> records, int dimension, double window) {
@@ -142,6 +143,17 @@ Cohesive cohesive(std::span<const PrincipalStresses> tests, bool grains_stick) {
 double strength_angle_deg(std::span<const PrincipalStresses> tests, Cohesive cohesive) {
   return cohesive == Cohesive::no ? friction_angle_through_origin_deg(tests)
                                   : fit_with_cohesion(tests).friction_angle_deg;
+}
+
+double tensile_strength(std::span<const records::Record> records, int dimension) {
+  if (records.empty()) throw InputError("tensile_strength: 0 records; allowed: at least 1; give a test that records");
+  double largest = 0;
+  for (const auto& record : records) largest = std::max(largest, -principal_stresses(record.stress, dimension).minor);
+  return largest;
+}
+
+double apex_tension(double friction_angle_deg, double cohesion) {
+  return friction_angle_deg > 0 && cohesion > 0 ? cohesion / std::tan(friction_angle_deg * degree) : nan;
 }
 
 double bearing_capacity_Nc(double friction_angle_deg) {

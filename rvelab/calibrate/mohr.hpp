@@ -32,6 +32,7 @@ struct Peak {
   std::size_t record = 0;  ///< index into the records
   double strain = 0;
   PrincipalStresses stresses;
+  double left = 1;  ///< deviator of the last record over that of this one
 };
 
 /// The record with the largest deviator sigma_1 - sigma_3, unsmoothed; the first of several. With a held lateral stress
@@ -39,7 +40,7 @@ struct Peak {
 Peak peak(std::span<const records::Record> records, int dimension);
 
 /// True if the peak lies within the last twentieth of the strain of the records: still rising at the end, or on a
-/// plateau, the test shows no peak.
+/// plateau, the test shows no peak. One that has lost a tenth of it since then does: it broke.
 bool rising_at_end(std::span<const records::Record> records, const Peak& peak);
 
 /// The moving mean of the principal stresses over `window` of strain (as many records as lie in it at their median
@@ -90,6 +91,12 @@ double local_shear_Nq(double friction_angle_deg);
 
 /// Angle of the active wedge under a footing against the horizontal, 45 + phi/2.
 double wedge_angle_deg(double friction_angle_deg);
+
+/// The largest tension of the minor principal stress, Pa; 0 where it never pulls. InputError without records.
+double tensile_strength(std::span<const records::Record> records, int dimension);
+
+/// c cot(phi), the tension on all sides at which a straight envelope ends, Pa; NaN without friction or cohesion.
+double apex_tension(double friction_angle_deg, double cohesion);
 
 /// The records of the last stage that has any.
 std::span<const records::Record> last_stage(const records::TestResult& result);

@@ -35,7 +35,7 @@ namespace {
 
 struct CalibrateArguments {
   std::string folder;
-  std::optional<std::string> pressures;
+  std::optional<std::string> pressures, tension;
   std::vector<std::string> specimens, more;
   bool every_pressure = false;
   TestOptions test;
@@ -46,16 +46,17 @@ struct Plan {
   std::vector<protocol::Protocol> protocols;
   std::vector<std::size_t> specimen_of;
   std::vector<std::string> files;  ///< names of the record files
+  std::size_t compressions = 0;    ///< the tests after these are in tension, one of each specimen
 
   std::string name(std::size_t test, bool several_specimens) const {
-    const std::string pressure = "p = " + in_words(protocols[test].pressure) + " Pa";
+    const std::string pressure = test < compressions ? "p = " + in_words(protocols[test].pressure) + " Pa" : "tension";
     return several_specimens ? "specimen " + std::to_string(specimen_of[test] + 1) + ", " + pressure : pressure;
   }
 };
 
 [[noreturn]] void refuse_pressure(const std::string& found) {
   throw InputError("--pressures holds \"" + found +
-                   "\"; allowed: numbers > 0 in Pa, apart by commas, each once; write for example 10e3,20e3");
+                   "\"; allowed: numbers from 0 in Pa, apart by commas, each once; write for example 10e3,20e3");
 }
 
 /// "10e3,15e3" as numbers.
@@ -66,7 +67,7 @@ std::vector<double> parsed_pressures(const std::string& list) {
     double value = 0;
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
     const bool whole = error == std::errc() && end == item.data() + item.size();
-    if (!whole || !std::isfinite(value) || value <= 0) refuse_pressure(item);
+    if (!whole || !std::isfinite(value) || value < 0) refuse_pressure(item);
     pressures.push_back(value);
   }
   if (pressures.empty()) refuse_pressure(list);
@@ -130,7 +131,53 @@ Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vec
       plan.files.push_back(file);
     }
   }
+  plan.compressions = plan.protocols.size();
   return plan;
+}
+
+/// A test in tension of each specimen that the plan has.
+void add_tension(const CalibrateArguments& arguments, std::size_t specimens, Plan& plan) {
+  if (!arguments.tension) return;
+  const protocol::Protocol tension = protocol::read_protocol(protocol_path(*arguments.tension));
+  const auto used = std::set<std::size_t>(plan.specimen_of.begin(), plan.specimen_of.end());
+  for (const std::size_t specimen : used) {
+    plan.protocols.push_back(tension);
+    plan.specimen_of.push_back(specimen);
+    plan.files.push_back(specimens > 1 ? "T_" + std::to_string(specimen + 1) + ".h5" : "T.h5");
+  }
+}
+
+/// What tests in tension and without lateral stress give beside the line, and what of it the line would give.
+struct TensionAndUnconfined {
+  std::vector<double> tensile;  ///< Pa, strength of each specimen
+  double unconfined = std::numeric_limits<double>::quiet_NaN();
+};
+
+TensionAndUnconfined beside_the_line(const std::vector<records::TestResult>& tension,
+                                     const calibrate::Calibration& calibration, int dimension) {
+  TensionAndUnconfined found;
+  for (const records::TestResult& test : tension)
+    found.tensile.push_back(calibrate::tensile_strength(calibrate::last_stage(test), dimension));
+  std::vector<double> strengths;
+  for (const calibrate::PressureResult& test : calibration.per_pressure)
+    if (test.pressure == 0) strengths.push_back(test.peak.major);
+  if (!strengths.empty()) found.unconfined = calibrate::statistics(strengths).mean;
+  return found;
+}
+
+void add_beside_the_line(const TensionAndUnconfined& found, const calibrate::Calibration& calibration,
+                         Listing& listing) {
+  if (std::isfinite(found.unconfined)) listing.add("unconfined_strength_Pa", found.unconfined, "Pa");
+  if (found.tensile.empty()) return;
+  const calibrate::Statistics tensile = calibrate::statistics(found.tensile);
+  const double apex = calibrate::apex_tension(calibration.friction_angle_with_cohesion_deg, calibration.cohesion);
+  listing.add("tensile_strength_Pa", tensile.mean, "Pa");
+  if (found.tensile.size() > 1) listing.add("tensile_strength_standard_error_Pa", tensile.standard_error, "Pa");
+  listing.add_or_why("tension_at_apex_Pa", apex, "Pa", "the straight envelope has no apex in tension");
+  if (apex > 0)
+    listing.add("tensile_cut_off", "the soil bears " + in_words(std::round(1e3 * tensile.mean / apex) / 1e3) +
+                                       " of the tension c cot(phi) at which the straight envelope ends" +
+                                       (tensile.mean < apex ? ": cut it off at sigma_3 = -tensile_strength_Pa" : ""));
 }
 
 Json per_pressure(const calibrate::Calibration& calibration) {
@@ -171,13 +218,19 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
   };
   add("friction_angle", "_deg", calibration.friction_angle_of_specimens, "degrees");
   add("bearing_capacity_Nq", "", calibration.Nq_of_specimens, "");
+  if (calibration.cohesive != calibrate::Cohesive::no) {
+    add("bearing_capacity_Nc", "", calibration.Nc_of_specimens, "");
+    add("cohesion", "_Pa", calibration.cohesion_of_specimens, "Pa");
+  }
   Json rows = Json::array();
   for (std::size_t k = 0; k < calibration.per_specimen.size(); ++k) {
     const calibrate::SpecimenResult& one = calibration.per_specimen[k];
     rows.push_back({{"specimen", k + 1},
                     {"file", files[k]},
                     {"friction_angle_deg", one.friction_angle_deg},
-                    {"bearing_capacity_Nq", one.bearing_capacity_Nq}});
+                    {"bearing_capacity_Nq", one.bearing_capacity_Nq},
+                    {"bearing_capacity_Nc", one.bearing_capacity_Nc},
+                    {"cohesion_Pa", one.cohesion}});
   }
   listing.add_to_json("per_specimen", std::move(rows));
 }
@@ -231,7 +284,7 @@ std::string cohesion_in_words(const calibrate::Calibration& found) {
                               "taken as cohesionless, N_q by the secant angle through the origin"
                         : "";
   const std::string why = found.cohesive == Cohesive::by_law
-                              ? "the grains stick (adhesion of the contact law)"
+                              ? "the grains stick (bonds, water, or adhesion of the contact law)"
                               : "c is beyond twice its standard error and beyond 5 % of the mean stress";
   if (!std::isfinite(found.friction_angle_with_cohesion_deg))
     return "cohesive: " + why + "; N_q needs the straight envelope, of tests at two pressures or more";
@@ -270,8 +323,9 @@ Reasons reasons_of(const calibrate::Calibration& calibration) {
               percent(end)};
 }
 
-void report_calibration(const calibrate::Calibration& calibration, const std::string& protocol,
-                        const std::vector<std::string>& specimens, double wall_seconds, bool json) {
+void report_calibration(const calibrate::Calibration& calibration, const TensionAndUnconfined& beside,
+                        const std::string& protocol, const std::vector<std::string>& specimens, double wall_seconds,
+                        bool json) {
   Listing listing;
   unsigned long long grain_steps = 0;
   for (const auto& test : calibration.per_pressure) grain_steps += test.grain_steps;
@@ -291,10 +345,14 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
                      why.large_strain);
   listing.add_or_why("bearing_capacity_Nq", calibration.bearing_capacity_Nq, "", why.peak);
   listing.add_or_why("bearing_capacity_Nc", calibration.bearing_capacity_Nc, "", why.peak);
+  if (calibration.cohesive != calibrate::Cohesive::no)
+    listing.add_or_why("bearing_capacity_of_cohesion_Pa", calibration.cohesion * calibration.bearing_capacity_Nc, "Pa",
+                       why.peak);
   listing.add_or_why("local_shear_Nq", calibration.local_shear_Nq, "", why.peak);
   listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
   listing.add("cohesive", calibration.cohesive != calibrate::Cohesive::no);
   if (const std::string text = cohesion_in_words(calibration); !text.empty()) listing.add("cohesion", text);
+  add_beside_the_line(beside, calibration, listing);
   add_statistics(calibration, specimens, listing);
   if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
   listing.add_to_json("per_pressure", per_pressure(calibration));
@@ -326,7 +384,8 @@ void run_calibration(const CalibrateArguments& arguments) {
   const auto given = files_of(words);
   const auto specimens = specimens_for(at_pressures.front(), given);
   if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
-  const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
+  Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
+  add_tension(arguments, specimens.size(), plan);
   for (std::size_t k = 0; k < plan.protocols.size(); ++k)
     tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimens[plan.specimen_of[k]]));
   const std::size_t tests = plan.protocols.size();
@@ -366,23 +425,26 @@ void run_calibration(const CalibrateArguments& arguments) {
   if (std::size_t(done) < tests)
     end_stopped(" with " + std::to_string(done) + " of " + std::to_string(tests) + " tests complete; " +
                 (arguments.folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
-  std::vector<records::TestResult> results;
-  for (const protocol::TestRun& run : runs) results.push_back(run.result);
+  std::vector<records::TestResult> results, tension;
+  for (std::size_t k = 0; k < tests; ++k) (k < plan.compressions ? results : tension).push_back(runs[k].result);
+  const std::vector<std::size_t> specimen_of(plan.specimen_of.begin(),
+                                             plan.specimen_of.begin() + long(plan.compressions));
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   const int dimension = specimens.front().cell.dimension;
   const bool sticks = std::any_of(runs.begin(), runs.end(),
                                   [](const protocol::TestRun& run) { return calibrate::grains_stick(run.end_state); });
   if (!arguments.folder.empty())
     keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension, sticks);
-  report_calibration(calibrate::calibrate(results, dimension, plan.specimen_of, sticks), at_pressures.front().name,
+  const calibrate::Calibration calibration = calibrate::calibrate(results, dimension, specimen_of, sticks);
+  report_calibration(calibration, beside_the_line(tension, calibration, dimension), at_pressures.front().name,
                      specimen_files(at_pressures.front(), given), wall.count(), arguments.test.json);
 }
 
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  CLI::App& command =
-      *app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
+  CLI::App& command = *app.add_subcommand(
+      "calibrate", "Run a compression test at several pressures: friction angle, cohesion, N_q, N_c");
   const auto arguments = std::make_shared<CalibrateArguments>();
   command
       .add_option("--specimen", arguments->specimens,
@@ -390,6 +452,9 @@ void add_calibrate(CLI::App& app) {
                   "pressure; with --every-pressure each at all pressures")
       ->allow_extra_args(false);
   command.add_option("--pressures", arguments->pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
+  command.add_option(
+      "--tension", arguments->tension,
+      "also this test in tension of each specimen, direct_tension for\nexample: tensile strength, cut-off");
   command.add_flag("--every-pressure", arguments->every_pressure, "test each specimen at every pressure");
   command.add_option(
       "-o,--output", arguments->folder,
@@ -402,18 +467,24 @@ void add_calibrate(CLI::App& app) {
       "..._with_cohesion: the tangent angle, of the straight envelope of the peaks t = s sin phi + c cos phi, with\n"
       "standard errors of phi and c.\n"
       "friction_angle: the secant angle; of a cohesive soil the tangent angle. A soil is cohesive if its grains stick\n"
-      "(an adhesion above 0), or if c is above twice its standard error and above 5 % of the mean stress of the "
+      "(bonds, water, an adhesion above 0), or if c is above twice its standard error and above 5 % of the mean stress "
+      "of the "
       "peaks.\n"
       "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi) of friction_angle, the factor of a footing's\n"
       "surcharge in general shear; bearing_capacity_Nc: N_c = (N_q - 1) cot phi, that of its cohesion;\n"
+      "bearing_capacity_of_cohesion: c N_c, what a strip footing on the surface bears without weight and surcharge;\n"
       "local_shear_Nq: N_q with 2/3 tan phi, for loose soil; wedge_angle_deg: 45 + phi/2, angle of the active wedge\n"
       "below a footing against the horizontal.\n"
+      "--pressures 0,...: the test at 0 Pa is the unconfined compression, of bonded grains. tensile_strength "
+      "(--tension):\n"
+      "the largest tension of the minor stress; tension_at_apex: c cot phi, where the straight envelope ends.\n"
       "Specimens with other seeds differ by some degrees; test several. For two or more, calibrate prints mean,\n"
       "standard deviation and standard error of phi and N_q.\n"
       "Examples:\n"
       "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
       "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records\n"
       "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure\n"
+      "  rvelab calibrate biaxial --specimen cemented.h5 --pressures 0,20e3,40e3 --tension direct_tension\n"
       "  mpirun -np 8 rvelab calibrate biaxial 'S_*.h5' --every-pressure -o D --share");
   command.callback([arguments] { run_calibration(*arguments); });
 }

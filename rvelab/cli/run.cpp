@@ -153,9 +153,10 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
   listing.add("time_other_s", std::max(0.0, wall - calls - costs.files), "s");  // measured quantities, progress line
 }
 
-/// Whether the largest deviator of a stage is a strength: not on a path of pressures, nor of response envelopes.
+/// Whether the largest deviator of a stage is a strength: not on a path of pressures, of response envelopes, nor where
+/// cement dissolves under a stress that stays.
 bool leads_to_failure(const protocol::Stage& stage) {
-  return stage.kind != "pressure_path" && stage.kind != "envelope";
+  return stage.kind != "pressure_path" && stage.kind != "envelope" && stage.kind != "dissolve";
 }
 
 /// The peak of the last stage, and where the test ended.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/h5/run_stages.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -126,7 +127,7 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
 
 const rvelab::h5::FileCalls* rvelab_h5_file_calls() {
   using namespace rvelab::h5;
-  static const FileCalls calls{rvelab::io::version, rvelab::io::read_specimen,     write_pool,
-                               read_pool,           rvelab::keys::parameters_text, rvelab::keys::set_parameters};
+  static const FileCalls calls{rvelab::io::version,           rvelab::io::read_specimen,    write_pool,   read_pool,
+                               rvelab::keys::parameters_text, rvelab::keys::set_parameters, check_stages, run_stages};
   return &calls;
 }

@@ -1,5 +1,5 @@
-// librvelab-h5.so reads and writes files, and parameters as text, for librvelab.so, of the same version: values and
-// exceptions cross between them.
+// librvelab-h5.so reads and writes files, parameters and stages as text, for librvelab.so, of the same version: values
+// and exceptions cross between them.
 #pragma once
 
 #include <string>
@@ -18,6 +18,8 @@ struct FileCalls {
   pool::Population (*read_pool)(const std::string& path, const pool::Pool::TakeState& take);
   std::string (*parameters_text)(const Specimen& specimen);  ///< this and the next: keys/parameters.hpp
   void (*set_parameters)(Specimen& specimen, const std::string& text);
+  void (*check_stages)(const std::string& text);  ///< this and the next: run_stages.hpp
+  std::int64_t (*run_stages)(Specimen& specimen, const std::string& text);
 };
 
 /// Name of the function that librvelab-h5.so exports.

@@ -30,6 +30,9 @@ inline constexpr Interval steps{1, 1e12};
 inline constexpr Range pressures{{0, 1e15, true, false}, {{1e3, 1e9}}};
 /// Of pressures that grains already bear when a stage begins.
 inline constexpr Range held_pressures{positive, pressures.usual};
+/// The same with 0, which bonded grains can bear.
+inline constexpr Range pressures_from_zero{{0, 1e15}, pressures.usual};
+inline constexpr Range held_pressures_from_zero{not_negative, pressures.usual};
 /// Of sizes of grains, m: colloids to boulders.
 inline constexpr Range radii{positive, {{1e-8, 1}}};
 /// Of coefficients that an angle in degrees may have been written for; from 100 on no slip is meant.

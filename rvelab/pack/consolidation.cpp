@@ -83,7 +83,8 @@ double largest_gap(const StressGoal& goal, const Matrix3& stress) {
 }
 
 Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double largest_change) {
-  const double reach = largest_change * std::max(mean_pressure(stress, goal.dimension), 0.1 * goal.pressure());
+  const double reach = largest_change * std::max({mean_pressure(stress, goal.dimension), 0.1 * goal.pressure(),
+                                                  goal.pressure() > 0 ? 0 : goal.least_pressure});
   const double rest = largest_gap(goal, stress);
   if (rest <= reach) return goal.stress;
   return goal.stress - (1 - reach / rest) * (goal.stress - symmetric(stress));

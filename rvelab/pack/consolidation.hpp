@@ -18,14 +18,16 @@ struct StressGoal {
   Matrix3 stress = Matrix3::Zero();  ///< symmetric
   bool shear = true;                 ///< shear components are driven too, the cell shears; false: it keeps its angles
   int dimension = 2;
-  double pressure() const;  ///< mean, compression positive, Pa
+  double least_pressure = 0;  ///< Pa: increments are a part of it at least, on the way to 0
+  double pressure() const;    ///< mean, compression positive, Pa
 };
 
 /// Largest distance of a driven component from the goal, Pa.
 double largest_gap(const StressGoal& goal, const Matrix3& stress);
 
 /// Where the next increment goes to, on the straight way to the goal: no component further than `largest_change` of the
-/// present mean pressure, or of a tenth of the goal's. The goal itself once that is near enough.
+/// present mean pressure, of a tenth of the goal's, or of goal.least_pressure. The goal itself once that is near
+/// enough.
 Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double largest_change);
 
 /// Sub-steps that an increment waits for its stress: the rounds correct what it misses.

@@ -49,46 +49,53 @@ void expect_mixed(const rvelab_mixed& batch) {
   if (batch.rows != 3 && batch.rows != 6)
     throw Refused(Status::bad_input, "mixed.rows is " + std::to_string(batch.rows) + "; allowed: 3 in 2D, 6 in 3D");
   expect_time(batch.dt);
-  std::vector<std::int64_t> ids(batch.ids, batch.ids + batch.n);
-  std::sort(ids.begin(), ids.end());
-  const auto twice = std::adjacent_find(ids.begin(), ids.end());
-  if (twice != ids.end())
-    throw Refused(Status::duplicate, "apply_mixed: id " + std::to_string(*twice) + " stands twice");
 }
 
 }  // namespace
 
-Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
-  expect_mixed(batch);
-  const auto n = std::size_t(batch.n);
+Verdict each_entry(Pool& pool, const char* name, std::int64_t count, const std::int64_t* ids, std::int32_t* status,
+                   const std::function<void(std::size_t, Verdict&)>& call) {
+  const auto n = std::size_t(count);
+  std::vector<std::int64_t> sorted(ids, ids + n);
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+    throw Refused(Status::duplicate, std::string(name) + ": id " + std::to_string(*twice) + " stands twice");
   std::vector<Verdict> verdicts(n);
   pool.run_each(n, [&](std::size_t m) {
     try {
-      MixedSetting setting{batch.dt, batch.tolerance, {}};
-      if (batch.spin != nullptr) std::copy_n(batch.spin + 9 * m, 9, setting.spin);
-      const MixedDone done = pool.at<&Share::apply_mixed>(batch.ids[m], setting, rows_of(batch, m));
-      std::copy_n(done.sigma, 9, batch.sigma + 9 * m);
-      if (batch.dH != nullptr) std::copy_n(done.displacement_gradient, 9, batch.dH + 9 * m);
-      if (batch.held_error != nullptr) batch.held_error[m] = done.held_error;
-      if (batch.error_estimate != nullptr) batch.error_estimate[m] = done.error_estimate;
-      if (batch.tokens_out != nullptr) batch.tokens_out[m] = done.token;
-      verdicts[m].status = Status(done.status);
-      add_text(verdicts[m], done.text);
+      call(m, verdicts[m]);
     } catch (...) {
       verdicts[m] = verdict_of_failure();
     }
   });
   std::size_t worst = 0;
   for (std::size_t m = 0; m < n; ++m) {
-    if (batch.status != nullptr) batch.status[m] = std::int32_t(verdicts[m].status);
+    if (status != nullptr) status[m] = std::int32_t(verdicts[m].status);
     if (severity(verdicts[m].status) > severity(verdicts[worst].status)) worst = m;
   }
   if (n == 0 || verdicts[worst].status == Status::ok) return {};
   Verdict verdict = std::move(verdicts[worst]);
   char place[96];
-  std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(batch.ids[worst]));
+  std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(ids[worst]));
   add_text(verdict, place);
   return verdict;
+}
+
+Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
+  expect_mixed(batch);
+  return each_entry(pool, "apply_mixed", batch.n, batch.ids, batch.status, [&](std::size_t m, Verdict& verdict) {
+    MixedSetting setting{batch.dt, batch.tolerance, {}};
+    if (batch.spin != nullptr) std::copy_n(batch.spin + 9 * m, 9, setting.spin);
+    const MixedDone done = pool.at<&Share::apply_mixed>(batch.ids[m], setting, rows_of(batch, m));
+    std::copy_n(done.sigma, 9, batch.sigma + 9 * m);
+    if (batch.dH != nullptr) std::copy_n(done.displacement_gradient, 9, batch.dH + 9 * m);
+    if (batch.held_error != nullptr) batch.held_error[m] = done.held_error;
+    if (batch.error_estimate != nullptr) batch.error_estimate[m] = done.error_estimate;
+    if (batch.tokens_out != nullptr) batch.tokens_out[m] = done.token;
+    verdict.status = Status(done.status);
+    add_text(verdict, done.text);
+  });
 }
 
 /// One call that changes the committed state at once: change(rve) makes it and returns its report. Its token. What

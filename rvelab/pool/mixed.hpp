@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "rvelab/pool/pool.hpp"
 
@@ -25,6 +26,12 @@ struct RelaxDone {
   double sigma[9], unbalanced;
   std::int64_t substeps, reached;
 };
+
+/// call(m, verdict) for each entry of a call `name` on count >= 0 RVEs, shared out among the threads; what it throws
+/// becomes its verdict. Status of each, unless null. The worst verdict, whose text names index and id. Refused
+/// (duplicate) before any work.
+Verdict each_entry(Pool& pool, const char* name, std::int64_t count, const std::int64_t* ids, std::int32_t* status,
+                   const std::function<void(std::size_t, Verdict&)>& call);
 
 /// Applies each entry; the worst status, whose text names index and id.
 Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch);

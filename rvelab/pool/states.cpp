@@ -100,12 +100,14 @@ void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   take_state(held(id, ++serial_), snapshot);
 }
 
-void ThreadedPool::replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token) {
+void ThreadedPool::replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token,
+                           std::int64_t grain_steps) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   if (hold.resident().tokens.committed() != token)
     throw Refused(Status::busy, "another call has changed the RVE meanwhile; call again");
   take_state(hold, snapshot);
+  hold.slot().grain_steps.fetch_add(std::uint64_t(grain_steps), std::memory_order_relaxed);
 }
 
 void ThreadedPool::take_state(const Hold& hold, std::span<const std::byte> snapshot) {

@@ -87,7 +87,9 @@ class ThreadedPool : public Pool {
   virtual std::vector<std::byte> save(std::int64_t id);
   virtual void load(std::int64_t id, std::span<const std::byte> snapshot);
   /// The same, where the committed state is still that of `token`: Refused (busy) if another call has changed it since.
-  virtual void replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token);
+  /// `grain_steps` were made to get there.
+  virtual void replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token,
+                       std::int64_t grain_steps);
 
   std::vector<std::int64_t> costs(std::span<const std::int64_t> ids) {
     std::vector<std::int64_t> made(ids.size());

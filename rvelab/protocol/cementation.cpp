@@ -6,26 +6,12 @@
 #include <set>
 #include <tuple>
 
-#include "rvelab/grains/uniform.hpp"
+#include "rvelab/protocol/pair_numbers.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 
 namespace rvelab::protocol {
 
 namespace {
-
-/// Numbers of a pair, whatever the order of the list: of its ids, and of the image as the lower id sees it.
-Uniform numbers_of(const Specimen& s, const ListedPair& pair, std::uint64_t seed) {
-  std::uint64_t stream = 0;
-  const auto mix = [&](std::int64_t value) {
-    stream = (stream ^ std::uint64_t(value)) * 0x9e3779b97f4a7c15ULL;
-    stream ^= stream >> 32;
-  };
-  mix(s.grains.id[std::size_t(pair.i)]);
-  mix(s.grains.id[std::size_t(pair.j)]);
-  // Not the image itself: it goes with where the grains were wrapped. Of several images of one pair each has its
-  // branch.
-  return Uniform(seed, stream | 1);
-}
 
 /// A pair that is cemented now.
 struct Place {
@@ -145,7 +131,7 @@ void add_bonds(const Specimen& s, const Cementation& cement, Interactions& all) 
     const auto i = std::size_t(bond.i), j = std::size_t(bond.j);
     const double length = (s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i]).norm();
     const double smaller = std::min(radius[i], radius[j]);
-    Uniform draw = numbers_of(s, pair, cement.seed);
+    Uniform draw = numbers_of_pair(s, bond, cement.seed, Draw::cement);
     if (length - (radius[i] + radius[j]) > cement.gap * smaller || !(draw() < cement.share)) continue;
     if (others.contains({pair.i, pair.j, pair.image})) continue;
     std::fill(std::begin(columns), std::end(columns), 0.0);

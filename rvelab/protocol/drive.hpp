@@ -153,8 +153,11 @@ class RunningTest {
   /// the first record would be a load path that nobody prescribed.
   void expect_consolidated(const std::string& name, double found, double held) const;
 
-  /// Scale of a held stress: max(|target|, 1 % of the stage's first p). Error if both vanish.
+  /// Scale of a held stress: with_bonds(max(|target|, 1 % of the stage's first p)). Error if it is 0.
   double held_scale(double target) const;
+  /// That scale, Pa; of a specimen with bonds, which can hold a stress of 0, a thousandth of its reference pressure
+  /// (times `factor`) at least.
+  double with_bonds(double scale, double factor = 1) const;
   /// Time (s) for an increment of the driving strain (dimensionless); 0 when quasi-static.
   double time_for(double strain_increment) const;
 

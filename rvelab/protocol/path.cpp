@@ -202,11 +202,11 @@ namespace {
 /// targets, which may be small: a tenth of it), times the norm of B.
 double scale_of(const RunningTest& test, const PathRow& row, double target) {
   const double floor = (row.to.empty() ? 1.0 : 0.1) * std::abs(test.run.progress.first_pressure) * row.stress.norm();
-  const double scale = std::max(std::abs(target), floor);
+  const double scale = test.with_bonds(std::max(std::abs(target), floor), row.stress.norm());
   if (scale > 0) return scale;
   throw test.failed("row \"" + row.name +
                     "\": a stress of 0 Pa cannot be held from a state without pressure; allowed: a pressure > 0; "
-                    "compress first");
+                    "compress first, or cement the grains");
 }
 
 /// The symmetric displacement gradient that rows of pure strain prescribe.

@@ -31,7 +31,7 @@ void read_test(TableReader& reader, Protocol& protocol) {
       reader.optional_whole_number("dimension", {2, 3}, "dimension of the specimen", "(that of the specimen)", "2, 3");
   protocol.dimension = int(dimension.value_or(0));
   const auto pressure = reader.optional_number(
-      "pressure_Pa", "Pa", pressures,
+      "pressure_Pa", "Pa", pressures_from_zero,
       "pressure, compression positive, of every stage without one of its own; `rvelab calibrate` sets it");
   protocol.pressure = pressure.value_or(protocol.pressure);
   // A pressure that is wrong, or in another unit, is one mistake, not one more for each stage that would have taken it.
@@ -92,7 +92,7 @@ void read_specimen_name(TableReader& reader, Protocol& protocol) {
 }
 
 void read_calibrate(TableReader& reader, Protocol& protocol) {
-  protocol.calibration_pressures = reader.numbers("pressures_Pa", "Pa", held_pressures,
+  protocol.calibration_pressures = reader.numbers("pressures_Pa", "Pa", held_pressures_from_zero,
                                                   "pressures of `rvelab calibrate`; --pressures overrides them");
 }
 

@@ -26,10 +26,12 @@ struct Compression : KindOf<CompressionStage> {
                   "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 "
                   "(undrained); zero_strain: oedometer");
     const bool held = stage.lateral == CompressionStage::Lateral::constant_stress;
-    stage.lateral_pressure = pressure_of(
-        reader, "lateral_pressure_Pa", held_pressures,
-        "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start from it",
-        protocol, held ? "" : "lateral = " + as_toml(laterals[std::size_t(stage.lateral)]));
+    stage.lateral_pressure =
+        pressure_of(reader, "lateral_pressure_Pa", held_pressures_from_zero,
+                    "lateral = constant_stress: lateral stress that is held, compression positive; the stage must "
+                    "start from it; 0: "
+                    "of bonded grains",
+                    protocol, held ? "" : "lateral = " + as_toml(laterals[std::size_t(stage.lateral)]));
     read_cycles(
         reader, stage.cycles, stage.to_strain, stage.record_every,
         "cycles > 0: the strain reverses where the size of the axial less the mean lateral stress reaches this");

@@ -20,8 +20,9 @@ constexpr double far_off = 20;  ///< ratio to the reference pressure from which 
 
 constexpr std::int32_t first_phase = 1;  ///< the phase before those of the consolidation
 
-pack::StressGoal goal_of(const IsotropicStage& stage, int dimension) {
+pack::StressGoal goal_of(const IsotropicStage& stage, int dimension, double scale) {
   pack::StressGoal goal;
+  goal.least_pressure = scale;
   for (int k = 0; k < dimension; ++k) goal.stress(k, k) = -stage.pressure;
   goal.shear = stage.shear_stress_free;
   goal.dimension = dimension;
@@ -55,8 +56,8 @@ struct Isotropic : KindOf<IsotropicStage> {
   bool takes_events() const override { return false; }
 
   void read(TableReader& reader, Protocol& protocol) override {
-    stage.pressure =
-        pressure_of(reader, "pressure_Pa", pressures, "target of all normal stresses, compression positive", protocol);
+    stage.pressure = pressure_of(reader, "pressure_Pa", pressures_from_zero,
+                                 "target of all normal stresses, compression positive; 0: of bonded grains", protocol);
     reader.choice("shear", stage.shear_stress_free, {"zero_strain", "zero_stress"},
                   "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero");
     reader.number("stress_tolerance", stage.stress_tolerance, "1", ratio,
@@ -73,7 +74,12 @@ struct Isotropic : KindOf<IsotropicStage> {
   std::size_t planned_records() const override { return stage.record ? 2 : 0; }
 
   void drive(RunningTest& test) const override {
-    const pack::StressGoal goal = goal_of(stage, test.dimension());
+    const double scale = test.with_bonds(stage.pressure);
+    if (!(scale > 0))
+      throw test.failed(
+          "pressure_Pa = 0 is for bonded grains, and the specimen has no bonds; allowed: above 0 Pa; give "
+          "a pressure, or put a stage kind = \"cement\" before it");
+    const pack::StressGoal goal = goal_of(stage, test.dimension(), scale);
     records::Progress& at = test.run.progress;
     if (at.phase == first_phase) {
       if (stage.record) test.record_now(0);
@@ -82,7 +88,7 @@ struct Isotropic : KindOf<IsotropicStage> {
     ConsolidatedTest consolidated{test, goal};
     const pack::Rest rest{stage.stress_tolerance, stage.unbalanced, stage.largest_change, stage.max_rounds,
                           stage.max_steps};
-    const auto reached = pack::consolidate(consolidated, goal, rest, stage.pressure);
+    const auto reached = pack::consolidate(consolidated, goal, rest, scale);
     if (reached == pack::Consolidated::far_off) {
       throw test.failed("p = " + std::to_string(mean_pressure(at.stress, test.dimension())) + " Pa after " +
                         std::to_string(pack::most_increments) + " increments; wanted: " +
@@ -90,18 +96,20 @@ struct Isotropic : KindOf<IsotropicStage> {
     }
     if (reached == pack::Consolidated::not_still) {
       std::ostringstream text;
-      text << "the normal stresses miss -" << stage.pressure << " Pa by "
-           << pack::largest_gap(goal, at.stress) / stage.pressure << " of it (allowed " << stage.stress_tolerance
-           << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed " << stage.unbalanced << ") after "
-           << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
+      text << "the normal stresses miss -" << stage.pressure << " Pa by " << pack::largest_gap(goal, at.stress) / scale
+           << (stage.pressure == scale ? " of it" : " of " + in_words(scale) + " Pa") << " (allowed "
+           << stage.stress_tolerance << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed "
+           << stage.unbalanced << ") after " << stage.max_rounds
+           << " rounds; raise max_rounds, max_steps or the tolerances";
       throw test.failed(text.str());
     }
     if (stage.shear_stress_free)
       test.apply(pack::upright_again(at.deformation, Matrix3::Identity()), {}, 0, test.loading.held_tolerance);
     // Tolerances of the following stages refer to the pressure reached here, if the old one is far away (discs swelled
     // from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
+    // Bonds keep theirs: it is by their forces that out-of-balance forces are judged where there is little pressure.
     const double change = stage.pressure / test.rve.reference_pressure();
-    if (!(change > 1 / far_off && change < far_off)) test.rve.take_as_reference();
+    if (scale == stage.pressure && !(change > 1 / far_off && change < far_off)) test.rve.take_as_reference();
     if (stage.record) test.record_now(1 - at.deformation.determinant());
   }
 };

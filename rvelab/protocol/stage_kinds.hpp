@@ -58,7 +58,7 @@ using MakeStage = std::unique_ptr<StageKind>();
 
 // Each in stage_NAME.cpp.
 MakeStage isotropic_kind, compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind, path_kind,
-    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind;
+    flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind, dissolve_kind;
 /// Of what interactions form from, by the place of their law among those that form by themselves (stage_forming.cpp).
 std::unique_ptr<StageKind> forming_kind(int which);
 template <int which>
@@ -76,11 +76,11 @@ constexpr auto with_forming_kinds(const std::array<MakeStage*, count>& own, std:
 }
 
 /// Every kind, in the order in which keys and messages list them.
-inline constexpr auto stage_kinds =
-    with_forming_kinds(std::array<MakeStage*, 12>{isotropic_kind, compression_kind, simple_shear_kind,
-                                                  pressure_path_kind, deviatoric_kind, path_kind, flow_kind,
-                                                  deformation_kind, envelope_kind, relax_kind, probe_kind, cement_kind},
-                       std::make_integer_sequence<int, forming_laws(InteractionLaws{})>());
+inline constexpr auto stage_kinds = with_forming_kinds(
+    std::array<MakeStage*, 13>{isotropic_kind, compression_kind, simple_shear_kind, pressure_path_kind, deviatoric_kind,
+                               path_kind, flow_kind, deformation_kind, envelope_kind, relax_kind, probe_kind,
+                               cement_kind, dissolve_kind},
+    std::make_integer_sequence<int, forming_laws(InteractionLaws{})>());
 
 /// A stage of the kind of this name. std::logic_error if there is none.
 std::unique_ptr<StageKind> stage_of_kind(const std::string& name);

@@ -39,6 +39,42 @@ def setUpModule() -> None:
                     "pack.number=64", "--set", "target.void_ratio=0.2"], check=True, capture_output=True)
 
 
+class Stages(unittest.TestCase):
+    """What a test makes of a specimen, a host makes of an RVE: the same bits."""
+
+    cement = {"kind": "cement", "gap": 0.05, "young_modulus_Pa": 50e6, "tensile_strength_Pa": 2e5, "cohesion_Pa": 2e5}
+    dissolve = {"kind": "dissolve", "radius_left": 0.5, "step_count": 2}
+
+    def test_stages_are_those_of_the_program(self) -> None:
+        protocol, ended = folder / "stages.toml", folder / "stages.h5"
+        text = '[test]\nname = "t"\n' + rvelab.pool.stages_text([self.cement, self.dissolve])
+        protocol.write_text(text)
+        subprocess.run([os.environ["RVELAB_PROGRAM"], "run", protocol, "--specimen", specimen, "-o", ended, "--force"],
+                       check=True, capture_output=True)
+        for stages in ([self.cement, self.dissolve], text):
+            rve = rvelab.Rve(specimen)
+            sigma, wanted = rve.run_stages(stages), rvelab.Rve(ended)
+            np.testing.assert_array_equal(sigma, wanted.sigma)
+            for name in ("bonds/radius_m", "bonds/shear_force_N", "grains/position_m", "contacts/force_N"):
+                np.testing.assert_array_equal(rve.array(name), wanted.array(name))
+            self.assertGreater(len(rve.array("bonds/radius_m")), 0)
+            dH = [[0, 1e-4, 0], [0, 0, 0], [0, 0, 0]]
+            np.testing.assert_array_equal(rve.apply(dH), wanted.apply(dH))
+
+    def test_many_at_once_and_mistakes_by_name(self) -> None:
+        with rvelab.Pool() as pool:
+            rves = pool.spawn(pool.template(specimen), 3)
+            sigma = pool.run_stages(rves[:2], self.cement)
+            self.assertEqual(sigma.shape, (2, 3, 3))
+            self.assertEqual([len(pool.array(rve, "bonds/radius_m")) > 0 for rve in rves], [True, True, False])
+            with self.assertRaisesRegex(rvelab.RvelabError, "young_modulus_Pa"):
+                pool.run_stages(rves, {"kind": "cement"})
+            with self.assertRaisesRegex(rvelab.RvelabError, "bond"):
+                pool.run_stages(rves[2:], self.dissolve)
+            with self.assertRaisesRegex(TypeError, "stages"):
+                pool.run_stages(rves, ["cement"])
+
+
 class Places(unittest.TestCase):
     """Without RVELAB_LIBRARY and PYTHONPATH."""
 

@@ -104,11 +104,28 @@ TEST_CASE("The peak of an extension is where the axial stress is smallest, and h
   CHECK(!calibrate::rising_at_end(records, found));
 }
 
+TEST_CASE(
+    "The tensile strength is the largest tension of the minor stress, the apex where the straight envelope ends") {
+  std::vector<records::Record> records;
+  for (int k = 0; k <= 20; ++k) records.push_back(biaxial_record(-1e-4 * k, k <= 15 ? -2e3 * k : -5e3, 100));
+  CHECK(calibrate::tensile_strength(records, 2) == Approx(30e3));
+  records.resize(1);
+  CHECK(calibrate::tensile_strength(records, 2) == 0);
+  CHECK_THROWS_AS(calibrate::tensile_strength({}, 2), InputError);
+  // Circles that touch t = s sin phi + c cos phi shrink to a point at s = -c cot phi.
+  CHECK(calibrate::apex_tension(45, 10e3) == Approx(10e3));
+  CHECK(calibrate::apex_tension(30, 10e3) == Approx(10e3 * std::sqrt(3)));
+  CHECK(std::isnan(calibrate::apex_tension(0, 10e3)));
+  CHECK(std::isnan(calibrate::apex_tension(30, -1)));
+}
+
 TEST_CASE("A test whose largest deviator stands at its end was still rising") {
   std::vector<records::Record> records;
   for (int k = 0; k <= 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
   CHECK(calibrate::rising_at_end(records, calibrate::peak(records, 2)));
-  records[39].stress(1, 1) = -60e3;
+  records[39].stress(1, 1) = -60e3;  // one that broke in the last record has a peak
+  CHECK(!calibrate::rising_at_end(records, calibrate::peak(records, 2)));
+  records[40].stress(1, 1) = -58e3;
   CHECK(calibrate::rising_at_end(records, calibrate::peak(records, 2)));
   records[30].stress(1, 1) = -70e3;
   CHECK(!calibrate::rising_at_end(records, calibrate::peak(records, 2)));

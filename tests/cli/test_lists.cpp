@@ -28,7 +28,7 @@ TEST_CASE("keys takes a part of a key, whatever its case, and says when there is
   const Workplace here;
   const std::string text = here.run("keys PRESSURE").output;
   CHECK_THAT(text,
-             Contains("test.pressure_Pa  (number in Pa: above 0 to 1e+15; usual 1000 to 1e+09 Pa; no default)\n    ") &&
+             Contains("test.pressure_Pa  (number in Pa: 0 to 1e+15; usual 1000 to 1e+09 Pa; no default)\n    ") &&
                  Contains("stage.isotropic.pressure_Pa") && Contains("default (test.pressure_Pa)"));
   CHECK(text.find("friction") == std::string::npos);
   CHECK(nlohmann::json::parse(here.run("keys stage.probe --json").output)["keys"].size() == 3);

@@ -74,7 +74,7 @@ TEST_CASE("a file in another's place is told with what takes it, a probe below r
   here.write("C.h5.journal", "");
   expect_mistake(here.run("compare S.h5 C.h5"), "make the file with `rvelab recover C.h5`");
   expect_mistake(here.run("probe S.h5 --size 1e-30"), "--size 1e-30 is out of range; allowed: 1e-12");
-  expect_mistake(here.run("run biaxial --specimen S.h5 --set test.pressure_Pa=1e300"), "allowed: above 0 to 1e+15 Pa");
+  expect_mistake(here.run("run biaxial --specimen S.h5 --set test.pressure_Pa=1e300"), "allowed: 0 to 1e+15 Pa");
 }
 
 TEST_CASE("a listing shows what is not defined as a dash, never as a number that is none") {

@@ -8,6 +8,7 @@
 #include "rvelab/protocol/cementation.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/fuzz/journals.hpp"
+#include "tests/interaction/settings.hpp"
 #include "tests/io/nine_discs.hpp"
 #include "tests/io/random_specimen.hpp"
 
@@ -56,7 +57,7 @@ Specimen cemented_and_moist() {
   rve.set_interactions(protocol::cemented(rve, cement));
   Water water;
   water.suction = 50;
-  rve.set_water(water);
+  test::set_settings<CapillaryBridge>(rve, {water});
   Matrix3 gradient = Matrix3::Zero();
   gradient(0, 0) = -5e-3;  // some break
   gradient(1, 1) = 5e-3;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rvelab/protocol/cementation.hpp"
+#include "tests/interaction/settings.hpp"
 #include "tests/specimens.hpp"
 
 namespace rvelab::test {
@@ -27,16 +28,6 @@ struct Section {
 inline Section section_of(Shape shape, double radius) {
   if (dimension_of(shape) == 2) return {2 * radius, 2 * std::pow(radius, 3) / 3, 0};
   return {pi * radius * radius, pi * std::pow(radius, 4) / 4, pi * std::pow(radius, 4) / 2};
-}
-
-/// Gives the specimen what interactions of a law form from; nothing: takes it away, with them.
-template <class Law>
-void set_settings(Rve& rve, const std::vector<typename Law::Settings>& settings) {
-  Interactions all = rve.interactions();
-  auto& list = static_cast<ListOf<Law>&>(all);
-  list.settings = settings;
-  if (settings.empty()) list.items.clear();
-  rve.set_interactions(all);
 }
 
 }  // namespace rvelab::test

@@ -110,6 +110,10 @@ surface_energy_J_m2 = 0.1
 kind = "dmt"
 surface_energy_J_m2 = 0.1
 range_m = 1e-9
+[[stage]]
+kind = "dissolve"
+radius_left = 0.5
+hold = "axial_stress"
 )";
 
 /// A value of a key's kind and range, as an assignment writes it.

@@ -137,7 +137,7 @@ TEST_CASE("Wrong types, numbers that are not finite and values out of range are 
     CHECK(contains(message, "allowed"));
   };
   refused("test.pressure_Pa=-5", "test.pressure_Pa = -5 is out of range");
-  refused("test.pressure_Pa=0", "out of range");
+  refused("test.pressure_Pa=-1", "out of range");
   refused("test.pressure_Pa=nan", "is not finite");
   refused("test.pressure_Pa=inf", "is not finite");
   refused("test.pressure_Pa=high", "test.pressure_Pa = 'high' is not a number");

@@ -9,6 +9,7 @@
 #include "rvelab/protocol/cementation.hpp"
 #include "rvelab/ranks/ranked_pool.hpp"
 #include "tests/catch.hpp"
+#include "tests/interaction/settings.hpp"
 #include "tests/specimens.hpp"
 
 namespace rvelab::test {
@@ -68,7 +69,7 @@ inline const Specimen& cemented(int side) {
   rve.set_interactions(protocol::cemented(rve, cement));
   Water water;
   water.suction = 10;
-  rve.set_water(water);
+  set_settings<CapillaryBridge>(rve, {water});
   rve.relax(1e-5, 100'000);
   return made.emplace(side, rve.specimen()).first->second;
 }

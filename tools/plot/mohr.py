@@ -6,7 +6,8 @@ unsmoothed; a test that ends before 15 % strain with its largest deviator at the
 warning. Of several specimens at one pressure the circle of their mean state is drawn over thin ones of each. The envelope
 passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
 t = (sigma_1 - sigma_3)/2; of a cohesive soil it is t = s sin phi + c cos phi, as calibrate has it: its grains stick, or the c
-of three tests and more is beyond twice its standard error and 5 % of their mean s. Of several specimens the mean of their
+of three tests and more is beyond twice its standard error and 5 % of their mean s. Tests in tension (their least sigma_3 pulls: rvelab run direct_tension) are no points of the line: their circle is drawn,
+and the envelope is cut off at their mean strength. Of several specimens the mean of their
 angles with its 95 % interval (Student's) is drawn and printed instead. Where all tests reach 15 % axial strain, the mean of
 their angles from 12 to 15 % is drawn too, secants through the origin. Compression positive.
 """
@@ -40,9 +41,9 @@ def still_rising(test):
     """Why a test has no peak; empty where it has one."""
     sigma_1, sigma_3 = test.principal()
     peak = int(np.argmax(sigma_1 - sigma_3))
-    end = abs(test.strain[-1])
-    if abs(test.strain[peak]) <= 0.95 * end or end >= LARGE_STRAIN[1] - SLACK:
-        return ""
+    end, left = abs(test.strain[-1]), (sigma_1[-1] - sigma_3[-1]) / (sigma_1[peak] - sigma_3[peak])
+    if abs(test.strain[peak]) <= 0.95 * end or left <= 0.9 or end >= LARGE_STRAIN[1] - SLACK:
+        return ""  # it broke within a record counts as a peak
     return (f"{test.path}: still rising at the end ({100 * end:.3g} % strain): no peak; run it further (to_strain), to 15 % "
             "at most")
 
@@ -52,6 +53,17 @@ def peak_state(test):
     sigma_1, sigma_3 = test.principal()
     peak = int(np.argmax(sigma_1 - sigma_3))
     return 0.5 * (sigma_1[peak] + sigma_3[peak]), 0.5 * (sigma_1[peak] - sigma_3[peak])
+
+
+def pulls(test):
+    """A test in tension: the minor stress of its peak is one."""
+    centre, radius = peak_state(test)
+    return centre - radius < 0 and test.extension
+
+
+def tensile_strength(tests):
+    """Mean of the largest tensions of tests in tension, Pa; 0 without any."""
+    return float(np.mean([max(-test.principal()[1].min(), 0) for test in tests])) if tests else 0.0
 
 
 def large_strain_angle(test):
@@ -115,9 +127,21 @@ def interval_of(tests, cohesive):
     return float(angles.mean()), student(len(angles) - 1) * float(angles.std(ddof=1)) / math.sqrt(len(angles)), len(angles)
 
 
-def line_of(axes, angle, right, label, cohesion=0.0, **line):
-    """Draws tau = c + sigma tan phi, phi in radians, c in kPa."""
-    axes.plot([0, right], [cohesion, cohesion + right * math.tan(angle)], label=label, **line)
+def line_of(axes, angle, right, label, cohesion=0.0, cut=0.0, **line):
+    """Draws tau = c + sigma tan phi, phi in radians, c in kPa, cut off at the tension `cut`, kPa."""
+    left = -min(cut, cohesion / math.tan(angle)) if cut > 0 and angle > 0 else 0.0
+    x, y = [left, right], [cohesion + left * math.tan(angle), cohesion + right * math.tan(angle)]
+    axes.plot([left, *x] if cut > 0 else x, [0, *y] if cut > 0 else y, label=label, **line)
+
+
+def label_of(curve, drawn):
+    """Label of a circle: tests without lateral stress are unconfined, or in tension."""
+    before, found, after = curve.label.partition("no pressure at the start")
+    if not found:
+        return curve.label
+    words = "tension" if all(map(pulls, curve.stages)) else "unconfined"
+    sets = {other.rest for other in drawn if not all(map(pulls, other.stages))}
+    return words + after if len(sets) < 2 else before + words + after
 
 
 def draw_circles(axes, drawn):
@@ -133,13 +157,15 @@ def draw_circles(axes, drawn):
         centre, radius = states.mean(axis=0)
         x, y = centre + radius * np.cos(around), radius * np.sin(around)
         axes.fill_between(x, 0, y, color=curve.colour, alpha=0.08, linewidth=0)
-        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.5, label=curve.label)
+        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.5, label=label_of(curve, drawn))
         reach = max(reach, float(states.sum(axis=1).max()))
     return reach
 
 
 def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
+    tension = tensile_strength([test for test in tests if pulls(test)])
+    tests = [test for test in tests if not pulls(test)]
     peak, cohesion = envelope(tests)
     interval = interval_of(tests, cohesion != 0)
     text = f"peak friction angle {math.degrees(peak):.1f} degrees"
@@ -156,7 +182,10 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     if cohesion:
         label += f", c = {cohesion / 1e3:.3g} kPa"
         text += f", cohesion {cohesion:.0f} Pa: the tangent angle of a cohesive soil"
-    line_of(axes, interval[0] if interval else peak, right, label, cohesion / 1e3, color=colour, linewidth=1.6)
+    if tension:
+        label += f", $\\sigma_t$ = {tension / 1e3:.3g} kPa"
+        text += f", tensile strength {tension:.0f} Pa"
+    line_of(axes, interval[0] if interval else peak, right, label, cohesion / 1e3, tension / 1e3, color=colour, linewidth=1.6)
     large = [large_strain_angle(test) for test in tests]
     if None not in large:
         mean = sum(large) / len(large)
@@ -167,12 +196,18 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
 
 
 def sets_of(drawn):
-    """Tests of each kind at all its pressures, with their colour and the words that tell them apart."""
-    sets = {}
+    """Tests of each kind at all its pressures, with their colour and the words that tell them apart. Those in tension go
+    with the others where these are of one kind."""
+    sets, tension = {}, []
     for curve in drawn:
-        sets.setdefault(curve.rest, []).append(curve)
+        if all(map(pulls, curve.stages)):
+            tension += curve.stages
+        else:
+            sets.setdefault(curve.rest, []).append(curve)
+    if not sets:
+        raise ValueError("all tests are in tension; the envelope needs compressions: give their records too")
     if len(sets) == 1:
-        return [([stage for curve in drawn for stage in curve.stages], "crimson", "")]
+        return [([stage for curve in next(iter(sets.values())) for stage in curve.stages] + tension, "crimson", "")]
     found = []
     for own in sets.values():
         name = own[0].label.split(" (n =")[0]
@@ -197,13 +232,16 @@ def draw(stages, options):
     right = 1.06 * draw_circles(axes, drawn)
     found = [draw_envelopes(axes, own, right, colour, name) for own, colour, name in sets_of(drawn)]
     text, top = "; ".join(words for words, _ in found), max(height for _, height in found)
-    axes.set_xlim(0, right)
+    pulled = tensile_strength([test for test in tests if pulls(test)]) / 1e3
+    axes.set_xlim(-1.5 * pulled if pulled else 0, right)
+    if pulled:
+        axes.axvline(0, color="0.6", linewidth=0.8)
     axes.set_ylim(0, max(0.56 * right, top))
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("normal stress $\\sigma$, compression positive (kPa)")
     axes.set_ylabel("shear stress $\\tau$ (kPa)")
     kinds.legend(axes, "lateral pressure $\\sigma_r$, envelope")
-    words = " and ".join(dict.fromkeys(test.test_in_words() for test in tests))
+    words = " and ".join(dict.fromkeys("tension" if pulls(test) else test.test_in_words() for test in tests))
     axes.set_title(f"{words}: Mohr circles at peak", fontsize=11, loc="left")
     figure.savefig(options.output)
     return f"{options.output}: {text}" + "".join(f"\nwarning: not drawn: {why}" for why in rising)

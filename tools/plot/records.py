@@ -55,7 +55,7 @@ class Origin:
     specimen: int  # checksum of the specimen that the test began with
     grains: int
     material: tuple  # contact law and parameters of the materials
-    sticks: bool  # whether its contacts pull
+    sticks: bool  # whether its grains stick: bonds, water, contacts that pull
     settings: str  # the protocol without its pressures
     wall_seconds: float
     grain_steps: int
@@ -181,7 +181,8 @@ def without_pressures(table):
 def origin_of(file, path, protocol):
     """Origin of an open record file."""
     specimen = file["specimen"]
-    material, sticks = [specimen["contact/law"][()]], False
+    material, sticks = [specimen["contact/law"][()]], any(
+        len(group[next(iter(group))]) > 0 for group in map(specimen.get, ("bonds", "bridges")) if group)
     for name, values in specimen["materials"].items():
         if name != "name":
             material += [f"{name} {value:.6g}" for value in np.ravel(values[()])]

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "rvelab/io/utf8.hpp"
+#include "tools/mpm/app/changes.hpp"
 #include "tools/mpm/output/checkpoint.hpp"
 #include "tools/mpm/output/output.hpp"
 #include "tools/mpm/output/rocks.hpp"
@@ -195,11 +196,13 @@ class Outputs {
 
 /// Steps to the end of the scene, or until the run is stopped; whether it was.
 template <int D>
-bool step_to_end(const Scene& scene, const RunOptions& options, Solver<D>& solver, Progress& progress,
-                 Outputs<D>& outputs) {
+bool step_to_end(const Scene& scene, const RunOptions& options, Model<D>& model, Progress& progress,
+                 Outputs<D>& outputs, std::ostream& report) {
+  Solver<D>& solver = model.solver;
   ProgressLine line(options.quiet, solver.time, scene.duration);
   bool stopped = false;
   while (solver.time < scene.duration && !stopped) {
+    outputs.checked([&] { make_changes<D>(scene, model, report); });
     double dt = solver.stable_step();
     if (solver.points.empty()) dt = std::min(dt, scene.history_every);  // rocks alone have sub-steps
     outputs.checked([&] {
@@ -232,6 +235,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   expect_memory(scene);
   auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume, options.source);
   auto& solver = model->solver;
+  expect_good_changes<D>(scene, *model);
   Progress progress;
   if (options.resume) {
     read_checkpoint<D>(*model, progress, options.folder);
@@ -257,7 +261,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     outputs.row();
     outputs.frame();
   }
-  const bool stopped = step_to_end(scene, options, solver, progress, outputs);
+  const bool stopped = step_to_end(scene, options, *model, progress, outputs, report);
   report << std::setprecision(3) << "setup " << setup << " s\n";
   cost.print(report);
   if (stopped)

@@ -153,6 +153,33 @@ void Grains<D>::advance(Point<D>* points, long count, double dt, rvelab::Workers
 }
 
 template <int D>
+void Grains<D>::run_stages(Point<D>* points, const std::vector<long>& chosen, const std::string& stages) {
+  const auto begin = std::chrono::steady_clock::now();
+  batch_ids_.clear();
+  for (const long k : chosen) batch_ids_.push_back(ids_[std::size_t(k)]);
+  sigma_.resize(9 * chosen.size());
+  const auto status = rvelab_run_stages(pool_->get(), std::int64_t(chosen.size()), batch_ids_.data(), stages.c_str(),
+                                        sigma_.data(), nullptr);
+  if (status < RVELAB_OK)
+    throw std::runtime_error(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+  for (std::size_t k = 0; k < chosen.size(); ++k) points[chosen[k]].stress = from_nine<D>(sigma_.data() + 9 * k);
+  // A tangent takes the time of some hundred sub-steps: of points that share a state once, of many of a sample.
+  constexpr std::size_t sample = 32;
+  const std::size_t stride = std::max<std::size_t>(1, chosen.size() / sample);
+  double modulus = 0, last = -1;
+  for (std::size_t k = 0; k < chosen.size(); k += stride) {
+    const double p = pool_->info(batch_ids_[k]).p;
+    if (p != last) modulus = std::max(modulus, wave_modulus_of(*pool_, batch_ids_[k]));
+    last = p;
+  }
+  // Others may be as stiff as they were.
+  found_.modulus = chosen.size() == ids_.size() ? modulus : std::max(modulus, found_.modulus);
+  found_.first = std::max(found_.first, modulus);
+  wave_modulus_ = found_.modulus;
+  this->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int D>
 Measures Grains<D>::measures(long point) const {
   const auto info = pool_->info(ids_[std::size_t(point)]);
   return {info.void_ratio, info.fabric_anisotropy, info.coordination_number, NAN};
@@ -170,10 +197,11 @@ double Grains<D>::grain_steps() const {
 template <int D>
 void Grains<D>::save(OutputFile& file, const std::string& name) const {
   file.write("materials/" + name + "/ids", ids_);
-  file.write("materials/" + name + "/state",
-             std::vector<double>{wave_modulus_, double(split), double(warned), called, asked, found_.first,
-                                 found_.modulus, found_.compression, found_.called, grain_steps()},
-             {10});
+  file.write(
+      "materials/" + name + "/state",
+      std::vector<double>{wave_modulus_, double(split), double(warned), called, asked, found_.first, found_.modulus,
+                          found_.compression, found_.called, grain_steps(), double(changes_made)},
+      {11});
   std::vector<double> waiting;
   for (const auto& each : gathered_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
   file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
@@ -192,6 +220,7 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   earlier_ = 0;
   earlier_ = state[9] - grain_steps();
   found_ = {state[5], state[6], state[7], state[8]};
+  changes_made = state.size() > 10 ? long(state[10]) : 0;  // runs of 2.0 had none
   const auto waiting = file.read("materials/" + name + "/waiting");
   gathered_.clear();
   for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {

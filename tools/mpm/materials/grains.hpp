@@ -24,12 +24,16 @@ class Grains : public Material<D> {
   double grain_steps() const override;
   /// Stress of each RVE as it is, Pa.
   void read_stress(Point<D>* points);
+  /// Stages of a test, as text of TOML, on the RVEs of these points (rvelab_run_stages), whose stress and stiffness
+  /// then are those of the new states. runtime_error with rvelab's own text if one of them fails.
+  void run_stages(Point<D>* points, const std::vector<long>& chosen, const std::string& stages);
   /// The RVE of a point in a file of its own: grains, contacts and their history.
   void write_network(long point, const std::string& path) const { pool_->write_alone(ids_[std::size_t(point)], path); }
   const std::vector<std::int64_t>& ids() const { return ids_; }
   /// Increments that had to be cut, and those with a warning of the tolerance or of missing equilibrium.
   long split = 0, warned = 0;
   double called = 0, asked = 0;  ///< increments that RVEs got, and all of the points
+  long changes_made = 0;         ///< of the scene, those that came to this material
 
  private:
   void follow_stiffness(const Point<D>* points, long count);

@@ -42,6 +42,21 @@ void check_materials(const Scene& scene, const std::string& path) {
   }
 }
 
+void check_changes(const Scene& scene, const std::string& path) {
+  std::set<std::string> grains, names;
+  for (const auto& material : scene.materials)
+    if (material.grains) grains.insert(material.name);
+  for (const auto& change : scene.changes) {
+    if (!names.insert(change.name).second)
+      throw InputError(path + ": two changes are called " + change.name + "; rename one");
+    if (grains.contains(change.material)) continue;
+    throw InputError(path + ": change." + change.name + ".material is \"" + change.material + "\"; " +
+                     (grains.empty()
+                          ? "allowed: a material of kind = \"grains\", and there is none"
+                          : "the nearest material of grains is \"" + nearest_word(change.material, grains) + "\""));
+  }
+}
+
 void check_boundaries(const Scene& scene, const std::string& path) {
   std::set<std::string> planes, all;
   const auto expect_new = [&](const std::string& name) {
@@ -250,6 +265,7 @@ void expect_memory(const Scene& scene) {
 
 void check_scene(const Scene& scene, const std::string& path) {
   check_materials(scene, path);
+  check_changes(scene, path);
   check_boundaries(scene, path);
   if (scene.regions.empty() && !scene.rocks) {
     throw InputError(path + ": there is no [[region]]; the scene has no material points");

@@ -40,6 +40,22 @@ MaterialOfScene read_material(Keys& keys) {
   return material;
 }
 
+ChangeOfScene read_change(Keys& keys, std::size_t d) {
+  ChangeOfScene change;
+  change.name = keys.name();
+  change.material = keys.text("material");
+  change.at = keys.number("at_s", 0, 0);
+  change.stages = keys.text("stages");
+  if (keys.has("lower_m") || keys.has("upper_m")) {
+    change.lower = keys.vector("lower_m", d, {});
+    change.upper = keys.vector("upper_m", d, {});
+  }
+  keys.finish();
+  for (std::size_t i = 0; i < change.lower.size(); ++i)
+    if (!(change.lower[i] < change.upper[i])) keys.wrong("upper_m", "is not above lower_m; give the corners of a box");
+  return change;
+}
+
 std::vector<std::vector<double>> read_motion(Keys& keys, std::size_t d) {
   auto rows = keys.rows("motion", d + 1, {"_s", "_m_s"});
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -201,7 +217,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   Keys keys(file, path, "");
   // A misspelt table is reported before a key that is missing because of it.
   for (const char* name : {"scene", "grid", "time", "loads", "initial", "fluid", "output", "material", "region",
-                           "boundary", "body", "rock_material", "rock", "rocks", "rock_soil", "case"}) {
+                           "change", "boundary", "body", "rock_material", "rock", "rocks", "rock_soil", "case"}) {
     keys.known(name);
   }
   keys.finish();
@@ -214,6 +230,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   read_rest(keys, scene);
   const auto d = std::size_t(scene.dimension);
   for (auto& each : keys.tables("material")) scene.materials.push_back(read_material(each));
+  for (auto& each : keys.tables("change")) scene.changes.push_back(read_change(each, d));
+  std::stable_sort(scene.changes.begin(), scene.changes.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
   for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d, scene.water));
   for (auto& each : keys.tables("boundary")) {
     scene.planes.push_back(read_plane(each, d, scene.follows, scene.water.has_value()));

@@ -81,6 +81,13 @@ struct BodyOfScene {
   std::optional<PlateOfScene> plate;
 };
 
+/// Stages of a test, as text of TOML, that the RVEs of a material go through at a moment.
+struct ChangeOfScene {
+  std::string name, material, stages;
+  double at = 0;                     ///< s
+  std::vector<double> lower, upper;  ///< m: of points that lie in this box then; empty: of all
+};
+
 struct Scene {
   enum class Stress { zero, isotropic, geostatic };
   std::string name;
@@ -99,6 +106,7 @@ struct Scene {
   Loads loads;
   std::optional<WaterOfScene> water;  ///< none: dry soil
   std::vector<MaterialOfScene> materials;
+  std::vector<ChangeOfScene> changes;  ///< in the order of their times
   std::vector<RegionOfScene> regions;
   std::vector<PlaneOfScene> planes;
   std::vector<BodyOfScene> bodies;

@@ -29,10 +29,33 @@ for _name, _arguments in {
         "array_init": (c_void_p, _size), "list_arrays": (_pool, _number, _number, c_void_p, c_void_p),
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
+        "run_stages": (_pool, _number, _ids, c_char_p, c_void_p, c_void_p),
         "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
     getattr(library, "rvelab_" + _name).argtypes = _arguments
+
+
+def stages_text(stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> str:
+    """Stages as TOML: a text of a protocol as it is; the keys of a stage, or of several."""
+    if isinstance(stages, str):
+        return stages
+    listed = [stages] if isinstance(stages, Mapping) else list(stages)
+    if not all(isinstance(stage, Mapping) for stage in listed):
+        raise TypeError("stages: a text of TOML, or the keys of each stage, {'kind': 'cement', ...}")
+    return "".join("[[stage]]\n" + _table_text(stage) for stage in listed)
+
+
+def _table_text(table: Mapping[str, Any]) -> str:
+    return "".join(f"{json.dumps(key)} = {_value_text(value)}\n" for key, value in table.items())
+
+
+def _value_text(value: Any) -> str:
+    if isinstance(value, Mapping):  # events, rows, components: inline tables
+        return "{" + ", ".join(f"{json.dumps(key)} = {_value_text(each)}" for key, each in value.items()) + "}"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_value_text(each) for each in value) + "]"
+    return json.dumps(value, default=plain)
 
 
 def parameters_text(settings: Mapping[str, Any]) -> str:
@@ -241,6 +264,16 @@ class Pool:
         """Sets some of them, all others stay: {"solver.relative_tolerance": 1e-3, "material.sand.friction": 0.4}, or
         tables as parameters() returns them. The state has a new token; a pending trial is reverted."""
         call("set_parameters", self._pool, id_of(rve), parameters_text(settings).encode())
+
+    def run_stages(self, rves: ArrayLike, stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> np.ndarray:
+        """Runs stages of a test on RVEs, by the keys of protocols: {"kind": "cement", "young_modulus_Pa": 50e6, ...}, a
+        list of such, or a text of TOML. Their ends are the new states, whose stresses are returned, (n, 3, 3) Pa; a
+        pending trial is reverted. If one of them fails, RvelabError says why: that one is as before, the others went
+        on."""
+        ids = numbers_of(rves, "ids")
+        sigma = np.full((len(ids), 3, 3), np.nan)
+        call("run_stages", self._pool, len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None)
+        return sigma
 
     def cost(self, rves: ArrayLike) -> np.ndarray:
         """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""

@@ -171,6 +171,11 @@ class Rve:
         """Sets some of them: {"material.friction": 0.4}; all others stay (Pool.set_parameters)."""
         self.pool.set_parameters(self.id, settings)
 
+    def run_stages(self, stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> np.ndarray:
+        """Runs stages of a test by their keys, {"kind": "cement", ...}, and returns the stress (Pool.run_stages): bonds
+        and water are made, cement dissolves, a pressure is reached. rvelab.run also gives records."""
+        return self.pool.run_stages([self.id], stages)[0]
+
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in _FIELDS:
             raise AttributeError(f"Rve has no attribute {name!r}; those of its state are the fields of rvelab.Info: "
