@@ -18,9 +18,9 @@ struct VanDerWaals {
 };
 inline constexpr SettingsField<VanDerWaals> van_der_waals_fields[] = {
     {"surface_energy_J_m2", &VanDerWaals::surface_energy, "J/m^2", number_from_zero,
-     "of the grains, half the work of adhesion"},
+     "of the grains, half the work of adhesion", true},
     {"range_m", &VanDerWaals::range, "m", number_from_zero,
-     "over which the pull falls to a quarter; it ends at 9 times it"},
+     "over which the pull falls to a quarter; it ends at 9 times it", true},
 };
 
 struct DmtAdhesion {

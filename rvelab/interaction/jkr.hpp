@@ -25,7 +25,7 @@ struct SurfaceEnergy {
 };
 inline constexpr SettingsField<SurfaceEnergy> surface_energy_fields[] = {
     {"surface_energy_J_m2", &SurfaceEnergy::surface_energy, "J/m^2", number_from_zero,
-     "of the grains, half the work of adhesion"}};
+     "of the grains, half the work of adhesion", true}};
 
 struct JkrAdhesion {
   static constexpr const char* name = "jkr_contacts";

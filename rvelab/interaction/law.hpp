@@ -57,6 +57,7 @@ struct SettingsField {
   const char* unit;
   Interval allowed;
   const char* meaning;
+  bool none_at_zero = false;  ///< 0: not given
 };
 struct RemovalKey {
   const char *name, *meaning;

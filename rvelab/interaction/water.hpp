@@ -16,12 +16,14 @@ struct Water {
 inline constexpr SettingsField<Water> water_fields[] = {
     {"surface_tension_N_m", &Water::surface_tension, "N/m", positive_number, "of water and air"},
     {"contact_angle_deg", &Water::contact_angle_deg, "degrees", {0, 45}, "of water on the grains"},
-    {"suction_Pa", &Water::suction, "Pa", number_from_zero, "of all bridges, which exchange water with a reservoir"},
+    {"suction_Pa", &Water::suction, "Pa", number_from_zero, "of all bridges, which exchange water with a reservoir",
+     true},
     {"volume_ratio",
      &Water::volume_ratio,
      "1",
      {0, 0.1},
-     "volume of each bridge over the cube of its smaller radius, between spheres"},
+     "volume of each bridge over the cube of its smaller radius, between spheres",
+     true},
 };
 
 }  // namespace rvelab

@@ -58,7 +58,7 @@ struct Forming : KindOf<FormingSettings<Law>> {
     for (const SettingsField<Settings>& field : Law::settings_fields) {
       double& value = settings.*field.value;
       const double usual = value;
-      if (usual != 0)
+      if (!field.none_at_zero)
         reader.number(field.name, value, field.unit, field.allowed, field.meaning);
       else
         value = reader.optional_number(field.name, field.unit, field.allowed, field.meaning).value_or(0);

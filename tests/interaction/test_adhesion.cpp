@@ -176,9 +176,9 @@ Rve sticky_packing(Shape shape, bool jkr, double friction, Law law = Law::hertz_
   const int side = dimension_of(shape) == 2 ? 8 : 5;
   Rve rve = at_rest(disordered(shape, side, m, law, 0.51, 4), 1e-8);
   if (jkr)
-    set_settings<JkrAdhesion>(rve, {{0.2}});
+    set_settings<JkrAdhesion>(rve, {{0.02}});
   else
-    set_settings<DmtAdhesion>(rve, {{0.2, 2e-5}});
+    set_settings<DmtAdhesion>(rve, {{0.02, 2e-5}});
   rve.apply(gradient(1e-4, 0, 0, 0), 0);
   return rve;
 }

@@ -353,6 +353,7 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   Water& water = static_cast<ListOf<CapillaryBridge>&>(s).settings.front();
   water.suction = random.within({1, 1e5});
   water.volume_ratio = 0;
+  static_cast<ListOf<DmtAdhesion>&>(s).settings.front().range = random.within({1e-6, 1e-5});
   each_interaction_law([&](auto, auto law) {
     using Law = decltype(law);
     auto& items = static_cast<ListOf<Law>&>(s).items;
