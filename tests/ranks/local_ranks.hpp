@@ -71,6 +71,7 @@ inline const Specimen& cemented(int side) {
   water.suction = 10;
   set_settings<CapillaryBridge>(rve, {water});
   rve.relax(1e-5, 100'000);
+  REQUIRE(has_any(rve.interactions()));
   return made.emplace(side, rve.specimen()).first->second;
 }
 

@@ -9,7 +9,8 @@ saturation, and phi of the effective stress, which is the stress less that of th
 Collapse: five specimens of 200 spheres, moist, loosened by 0 to 8 % in each direction, brought to a pressure and flooded
 (protocol collapse_on_wetting); the volume strain of flooding.
 
-Published statements that stand beside them, with limits as set before the runs:
+Published statements that stand beside them, with limits as set before the runs (that strength is the peak and c is counted from dry was
+settled after a first run, which took the mean from 1 to 3 % of strain and the bare intercept: then c fell by 44 % towards high suction):
   Richefeu, El Youssoufi, Radjai 2006 (Phys. Rev. E 73, 051304), tests and DEM: strength saturates as water content grows;
   Shen, Jiang, Thornton 2016 (Granul. Matter 18, 37), DEM: c grows with suction at a decreasing rate, phi does not depend on it;
   Badetti et al. 2018 (Eur. Phys. J. E 41), Duriez et al. 2018 (Int. J. Numer. Anal. Methods Geomech. 42, 959-978): the stress of the
