@@ -12,15 +12,11 @@ namespace {
 
 using Bond = Interaction<ParallelBond>;
 
-/// The material of that name, -1 for "".
+/// The material of that name, -1 if there is none.
 std::int32_t material_named(const Specimen& s, const std::string& name) {
-  if (name.empty()) return -1;
-  std::string names;
-  for (std::size_t m = 0; m < s.materials.size(); ++m) {
+  for (std::size_t m = 0; m < s.materials.size(); ++m)
     if (s.materials[m].name == name) return std::int32_t(m);
-    names += (names.empty() ? "" : ", ") + s.materials[m].name;
-  }
-  throw InputError("material = \"" + name + "\" is none of the specimen; allowed: " + names);
+  return -1;
 }
 
 /// Half f^2/k.
@@ -46,10 +42,37 @@ void shrink(double* column, double left, double length, double thickness) {
   column[B::twisting_moment] *= inertia;
 }
 
+/// Breaks the bond if it does not bear what it carries where its grains are: a state at rest makes no sub-step in which
+/// its law would be asked.
+void judge(double* column, const Vector3& branch, double thickness) {
+  using B = ParallelBond;
+  InteractionArrays one;
+  for (int k = 0; k < interaction_columns<B>(); ++k) one.column[k] = column + k;
+  one.thickness = thickness;
+  const double length = branch.norm(), before = column[B::released];
+  if (thickness > 0) {
+    B::in_plane<true, double>(one, 0, {length});
+  } else {
+    const Triple<double> turned[] = {load_triple<double>(one.column + B::shear_force, 0),
+                                     load_triple<double>(one.column + B::bending_moment, 0)};
+    B::in_space<true, double>(one, 0, {{branch[0] / length, branch[1] / length, branch[2] / length}, length}, turned);
+  }
+  if (column[B::broken] != 0) column[B::released] += before;
+}
+
 }  // namespace
+
+std::string lacking_in(const Specimen& specimen, const Dissolution& dissolution) {
+  const std::string& name = dissolution.material;
+  if (name.empty() || material_named(specimen, name) >= 0) return "";
+  std::string names;
+  for (const Material& material : specimen.materials) names += (names.empty() ? "" : ", ") + material.name;
+  return "material = \"" + name + "\" is none of the specimen; allowed: " + names;
+}
 
 Dissolved dissolved(const Rve& rve, const Dissolution& dissolution, double before, double part) {
   const Specimen s = rve.specimen();
+  if (const std::string mistake = lacking_in(s, dissolution); !mistake.empty()) throw InputError(mistake);
   const std::int32_t material = material_named(s, dissolution.material);
   const double thickness = s.cell.dimension == 2 ? s.cell.lattice(2, 2) : 0;
   const auto left = [&](double end) { return (1 - (1 - end) * part) / (1 - (1 - end) * before); };
@@ -63,10 +86,11 @@ Dissolved dissolved(const Rve& rve, const Dissolution& dissolution, double befor
     if (material >= 0 && s.grains.material[i] != material && s.grains.material[j] != material) continue;
     if (!(numbers_of_pair(s, bond, dissolution.seed, Draw::dissolution)() < dissolution.share)) continue;
     ++result.bonds;
-    const double length = (s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i]).norm();
-    if (radius < 1) shrink(column, radius, length, thickness);
+    const Vector3 branch = s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i];
+    if (radius < 1) shrink(column, radius, branch.norm(), thickness);
     column[ParallelBond::tensile_strength] *= strength;
     column[ParallelBond::cohesion] *= strength;
+    judge(column, branch, thickness);
     take_columns<ParallelBond>(column, bond);
   }
   return result;
