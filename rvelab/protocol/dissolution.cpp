@@ -50,6 +50,7 @@ void judge(double* column, const Vector3& branch, double thickness) {
   for (int k = 0; k < interaction_columns<B>(); ++k) one.column[k] = column + k;
   one.thickness = thickness;
   const double length = branch.norm(), before = column[B::released];
+  column[B::released] = 0;
   if (thickness > 0) {
     B::in_plane<true, double>(one, 0, {length});
   } else {
@@ -57,7 +58,7 @@ void judge(double* column, const Vector3& branch, double thickness) {
                                      load_triple<double>(one.column + B::bending_moment, 0)};
     B::in_space<true, double>(one, 0, {{branch[0] / length, branch[1] / length, branch[2] / length}, length}, turned);
   }
-  if (column[B::broken] != 0) column[B::released] += before;
+  column[B::released] += before;
 }
 
 }  // namespace
