@@ -10,15 +10,11 @@ namespace rvelab::protocol {
 
 namespace {
 
-/// The material of that name, -1 for "".
+/// The material of that name, -1 if there is none.
 std::int32_t material_named(const Specimen& s, const std::string& name) {
-  if (name.empty()) return -1;
-  std::string names;
-  for (std::size_t m = 0; m < s.materials.size(); ++m) {
+  for (std::size_t m = 0; m < s.materials.size(); ++m)
     if (s.materials[m].name == name) return std::int32_t(m);
-    names += (names.empty() ? "" : ", ") + s.materials[m].name;
-  }
-  throw InputError("material = \"" + name + "\" is none of the specimen; allowed: " + names);
+  return -1;
 }
 
 /// What is left of a bond: of its radius, of its strengths. `gap`, `length`: of its grains and of its branch now, m.
@@ -82,10 +78,41 @@ void weaken(ContactBond, double* column, const Left& left) {
   column[B::shear_strength] *= left.strength;
 }
 
+/// Breaks the bond if it does not bear what it carries where its grains are: a state at rest makes no sub-step in which
+/// its law would be asked.
+template <class B>
+void judge(double* column, const Vector3& branch, double ri, double rj, double thickness) {
+  InteractionArrays one;
+  one.radius_i = &ri;
+  one.radius_j = &rj;
+  for (int k = 0; k < interaction_columns<B>(); ++k) one.column[k] = column + k;
+  one.thickness = thickness;
+  const double length = branch.norm(), before = column[B::released];
+  column[B::released] = 0;
+  if (thickness > 0) {
+    B::template in_plane<true, double>(one, 0, {length});
+  } else {
+    Triple<double> turned[2] = {load_triple<double>(one.column + B::shear_force, 0), {0, 0, 0}};
+    if constexpr (requires { B::bending_moment; }) turned[1] = load_triple<double>(one.column + B::bending_moment, 0);
+    B::template in_space<true, double>(one, 0, {{branch[0] / length, branch[1] / length, branch[2] / length}, length},
+                                       turned);
+  }
+  column[B::released] += before;
+}
+
 }  // namespace
+
+std::string lacking_in(const Specimen& specimen, const Dissolution& dissolution) {
+  const std::string& name = dissolution.material;
+  if (name.empty() || material_named(specimen, name) >= 0) return "";
+  std::string names;
+  for (const Material& material : specimen.materials) names += (names.empty() ? "" : ", ") + material.name;
+  return "material = \"" + name + "\" is none of the specimen; allowed: " + names;
+}
 
 Dissolved dissolved(const Rve& rve, const Dissolution& dissolution, double before, double part) {
   const Specimen s = rve.specimen();
+  if (const std::string mistake = lacking_in(s, dissolution); !mistake.empty()) throw InputError(mistake);
   const std::int32_t material = material_named(s, dissolution.material);
   const double thickness = s.cell.dimension == 2 ? s.cell.lattice(2, 2) : 0;
   const auto left = [&](double end) { return (1 - (1 - end) * part) / (1 - (1 - end) * before); };
@@ -102,8 +129,10 @@ Dissolved dissolved(const Rve& rve, const Dissolution& dissolution, double befor
         if (material >= 0 && s.grains.material[i] != material && s.grains.material[j] != material) continue;
         if (!(numbers_of_pair(s, bond, dissolution.seed, Draw::dissolution)() < dissolution.share)) continue;
         ++result.bonds;
-        const double length = (s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i]).norm();
-        weaken(law, column, {radius, strength, length - (s.grains.radius[i] + s.grains.radius[j]), length, thickness});
+        const Vector3 branch = s.grains.position[j] + translation(s.cell, bond.image) - s.grains.position[i];
+        const double ri = s.grains.radius[i], rj = s.grains.radius[j], length = branch.norm();
+        weaken(law, column, {radius, strength, length - (ri + rj), length, thickness});
+        judge<Law>(column, branch, ri, rj, thickness);
         take_columns<Law>(column, bond);
       }
     }

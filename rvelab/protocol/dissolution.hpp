@@ -7,8 +7,8 @@
 // for moments. If the forces stayed instead, the energy f^2/(2 k A') of what is left would grow at once, though nothing
 // does work on it; what the lost rim bore is for the neighbours to take up, while the grains move. Where cement is a
 // phase of its own, its share of stress and energy falls with its volume in the same way (Tengattini et al. 2014, J.
-// Mech. Phys. Solids 70, 281). Falling strengths change no force: a bond that does not bear its own any more breaks in
-// the next sub-step.
+// Mech. Phys. Solids 70, 281). Falling strengths change no force: a bond that does not bear its own any more breaks at
+// once, by its law.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,9 @@ struct Dissolved {
   Interactions interactions;
   std::size_t bonds = 0;  ///< intact ones that lose something
 };
+
+/// What is wrong with its material on a specimen; "": nothing.
+std::string lacking_in(const Specimen& specimen, const Dissolution& dissolution);
 
 /// The interactions of an Rve after `part` (0 to 1) of a dissolution of which `before` (less than that) is done:
 /// radius and strengths fall as straight lines. The energy that a bond gives up is added to its released energy.

@@ -187,8 +187,8 @@ class RunningTest {
   double time_ = 0;  ///< s, see PathPoint::time
 };
 
-/// InputError if a stage does not go with specimens of this dimension.
-void expect_fits(const Protocol& protocol, int dimension);
+/// InputError if a stage does not go with specimens of this dimension, or names what this one has not.
+void expect_fits(const Protocol& protocol, const Specimen& specimen);
 
 /// A quantity that an event may check.
 struct EventQuantity {

@@ -312,7 +312,7 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
     if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
   }
   raise(protocol.path, errors);
-  expect_fits(protocol, specimen.cell.dimension);
+  expect_fits(protocol, specimen);
   try {
     pack::expect_possible(pack::pressed(specimen, pressure_words, protocol.largest_pressure), specimen.contact,
                           specimen.materials);

@@ -62,9 +62,10 @@ std::string kinds_with_events(bool taking) {
   return names;
 }
 
-void expect_fits(const Protocol& protocol, int dimension) {
+void expect_fits(const Protocol& protocol, const Specimen& specimen) {
   for (const Stage& stage : protocol.stages) {
-    const std::string mistake = stage.what->misfit(dimension);
+    std::string mistake = stage.what->misfit(specimen.cell.dimension);
+    if (mistake.empty()) mistake = stage.what->lacking_in(specimen);
     if (!mistake.empty()) throw InputError(protocol.path + ": stage \"" + stage.name + "\": " + mistake);
   }
 }

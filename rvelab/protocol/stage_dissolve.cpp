@@ -65,6 +65,10 @@ struct Dissolve : KindOf<DissolveSettings> {
   std::size_t planned_records() const override { return std::size_t(stage.step_count) + 1; }
   std::string misfit(int dimension) const override { return out_of_plane("axis", stage.axis, dimension); }
 
+  std::string lacking_in(const Specimen& specimen) const override {
+    return protocol::lacking_in(specimen, stage.dissolution);
+  }
+
   void drive(RunningTest& test) const override {
     records::Progress& at = test.run.progress;
     const std::vector<HeldStress> held = held_stresses(test);

@@ -32,6 +32,8 @@ class StageKind {
   virtual std::size_t planned_records() const { return 0; }
   /// Why it does not go with specimens of this dimension, with the remedy; "": it does.
   virtual std::string misfit(int /*dimension*/) const { return ""; }
+  /// What it names and the specimen has not, with the remedy; "": nothing.
+  virtual std::string lacking_in(const Specimen& /*specimen*/) const { return ""; }
   /// What calibration may read from its records.
   virtual StageRole role() const { return {}; }
   /// Settings with which that is a strength, in words; "": never.

@@ -19,7 +19,7 @@ struct CutRuns : mpm::test::SceneRuns {
     REQUIRE(pack.wait() == 0);
   }
   int start(const std::string& name, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"-j", "1", "--case", "coarse"});
+    more.insert(more.begin(), {"-j", "1", "--case", "coarse", "--specimens", folder / "."});
     return SceneRuns::start(name, more);
   }
   /// Height over that of the start, m, of the point at the top of the face at a time (its row of watched.csv).
