@@ -3,7 +3,9 @@
 // 1e2 to 1e6. From each, at rest and after 1 % and 5 % of drained compression, increments of 1e-6 to 1e-2: on, back,
 // turned, on with a rotation, anyhow. The constants of quasi_static/constants.hpp were fitted to packings of even
 // seeds from 2 to 36. Seeds from 101 on are of five kinds and most of their increments long (first_of_kinds): 101 to
-// 110 were looked at when the error of the way was chosen (add_error_of_path), 111 to 120 afterwards.
+// 110 were looked at when the error of the way was chosen (add_error_of_path), 111 to 120 afterwards. Those from 201 on
+// are cemented or moist (estimates_packings.hpp): 201 to 220 were looked at when events.hpp was made, 221 to 270
+// afterwards.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance
@@ -24,183 +26,18 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
-#include "rvelab/grains/uniform.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
-#include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/drive.hpp"
-#include "rvelab/solver/rve.hpp"
+#include "tools/validate.d/estimates_packings.hpp"
 
 using namespace rvelab;
+using namespace rvelab::estimates;
 
 namespace {
 
-constexpr double pressure = 1e5, thickness = 0.1, mean_radius = 5e-3;
-constexpr int percents[] = {0, 1, 5};
-constexpr double stiff = 1e4;  ///< kn/(p t) beyond which strains are a tenth of that
 constexpr const char* directions[] = {"on", "back", "turned", "on, rotated", "random"};
-constexpr double pi = 3.14159265358979323846;
-
-/// Numbers of a seed, for one purpose each.
-class Random {
- public:
-  Random(std::uint64_t seed, std::uint64_t purpose) : uniform_(seed, purpose + 1) {}
-  double operator()(double low, double high) { return low + (high - low) * uniform_(); }
-  double power(double low, double high) { return std::pow(10, (*this)(low, high)); }
-  bool chance(double share) { return (*this)(0, 1) < share; }
-
- private:
-  Uniform uniform_;
-};
-
-struct Drawn {
-  pack::Recipe recipe;
-  double kappa = 0, ratio = 1, friction = 0;
-};
-
-Drawn drawn_recipe(std::uint64_t seed) {
-  Random random(seed, 0);
-  Drawn d;
-  pack::Recipe& r = d.recipe;
-  const auto kind = (seed / 2) % 6;  // both parities get all
-  r.shape = kind < 3 ? Shape::disc : kind < 5 ? Shape::sphere : Shape::ellipse;
-  const int dimension = dimension_of(r.shape);
-  r.seed = seed;
-  r.number = std::size_t(random(dimension == 2 ? 60 : 90, dimension == 2 ? 160 : 180));
-  r.thickness = thickness;
-  d.ratio = random.power(0.05, 1);
-  Grading& grading = r.fractions[0].grading;
-  grading.curve = random.chance(0.5) ? GradingCurve::uniform : GradingCurve::linear;
-  grading.smallest_radius = 2 * mean_radius / (1 + d.ratio);
-  grading.largest_radius = d.ratio * grading.smallest_radius;
-  if (r.shape == Shape::ellipse) {
-    r.fractions[0].smallest_aspect_ratio = random(0.4, 0.9);
-    r.fractions[0].largest_aspect_ratio = 0.95;
-  }
-  Material& m = r.materials[0];
-  const double share = random(0, 1);
-  d.friction = m.friction = share < 0.1    ? 0
-                            : share < 0.45 ? random.power(-2, -0.7)
-                                           : random.power(-0.7, share < 0.9 ? 0 : 1);
-  const bool hertz = r.shape != Shape::ellipse && random.chance(0.35);
-  d.kappa = random.power(2, hertz ? 4.5 : 6);
-  r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.2, 1) * m.normal_stiffness;
-  m.poisson_ratio = random(0, 0.4);
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
-  r.contact.rolling = m.friction > 0 && random.chance(0.3);
-  m.rolling_stiffness = random(0.2, 2);
-  m.rolling_friction = random.power(-2, -0.3);
-  r.damping.local = 0.1;
-  r.solver.max_overlap_ratio = 1;
-  r.stress_tolerance = 2e-3;
-  r.unbalanced = 1e-4;
-  r.stress = pack::isotropic_stress(pressure, r.shape);
-  if (random.chance(0.5)) r.preparation.friction = std::min(m.friction, random(0, 0.1));
-  return d;
-}
-
-/// Seeds from here on: one of five kinds whose long increments an outside check found below 95 % (seed % 5): many discs
-/// of little friction, wide Hertz spheres, stiff spheres (overlaps of 1e-4: 10 kPa on 1e8 Pa), ellipses, loose rolling
-/// discs. Six of seven increments are of 1e-3 to 1e-2.
-constexpr std::uint64_t first_of_kinds = 101;
-
-Drawn drawn_kind(std::uint64_t seed) {
-  Random random(seed, 0);
-  Drawn d;
-  pack::Recipe& r = d.recipe;
-  const auto kind = seed % 5;
-  r.shape = kind == 1 || kind == 2 ? Shape::sphere : kind == 3 ? Shape::ellipse : Shape::disc;
-  const int dimension = dimension_of(r.shape);
-  r.seed = seed;
-  r.number = std::size_t(kind == 0 ? 400 : kind == 4 ? random(150, 250) : random(120, 180));
-  r.thickness = thickness;
-  d.ratio = kind == 1 ? 0.25 : random(0.4, 0.6);
-  Grading& grading = r.fractions[0].grading;
-  grading.curve = kind == 1 ? GradingCurve::linear : GradingCurve::uniform;
-  grading.smallest_radius = 2 * mean_radius / (1 + 1 / d.ratio);
-  grading.largest_radius = grading.smallest_radius / d.ratio;
-  if (kind == 3) {
-    r.fractions[0].smallest_aspect_ratio = random(0.5, 0.7);
-    r.fractions[0].largest_aspect_ratio = 0.9;
-  }
-  Material& m = r.materials[0];
-  d.friction = m.friction = kind == 0 ? random(0.05, 0.09) : random(0.3, 0.5);
-  d.kappa = kind == 2 ? random.power(3.7, 4) : random.power(2.9, 3.5);
-  r.contact.law = kind == 1 ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
-  m.poisson_ratio = 0.2;
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
-  r.contact.rolling = kind == 4;
-  m.rolling_stiffness = random(0.5, 1.5);
-  m.rolling_friction = random(0.1, 0.3);
-  r.damping.local = 0.1;
-  r.solver.max_overlap_ratio = 1;
-  r.stress_tolerance = 2e-3;
-  r.unbalanced = 1e-4;
-  r.stress = pack::isotropic_stress(pressure, r.shape);
-  if (kind == 1) r.preparation.friction = 0.1;
-  d.ratio = 1 / d.ratio;
-  return d;
-}
-
-Drawn drawn(std::uint64_t seed) { return seed < first_of_kinds ? drawn_recipe(seed) : drawn_kind(seed); }
-
-std::string in_words(std::uint64_t seed) {
-  const Drawn d = drawn(seed);
-  char text[200];
-  std::snprintf(text, sizeof text, "%zu %s%s%s, 1:%.2g, mu %.2g, kappa %.1e", d.recipe.number,
-                d.recipe.shape == Shape::disc     ? "discs"
-                : d.recipe.shape == Shape::sphere ? "spheres"
-                                                  : "ellipses",
-                d.recipe.contact.law == Law::hertz_mindlin ? ", Hertz" : "",
-                d.recipe.contact.rolling ? ", rolling" : "", d.ratio, d.friction, d.kappa);
-  return text;
-}
-
-/// A recipe that comes to no rest is drawn again.
-Specimen packed(pack::Recipe recipe) {
-  Workers alone(1);
-  for (int draws = 1;; ++draws) {
-    try {
-      Rve rve(pack::pack(recipe, alone).specimen);
-      if (!rve.relax(1e-7, 300'000).target_held) throw IncrementFailed("the packing does not come to rest");
-      return rve.specimen();
-    } catch (const IncrementFailed&) {
-      if (draws == 5) throw;
-      recipe.seed += 1000;
-    }
-  }
-}
-
-/// At rest, after a fifth and at the end of a drained compression. That of a stiff one is a tenth as long, and its rate
-/// follows no tolerance but near those two: x = strain/overlap is more than a thousand even so.
-std::vector<Specimen> states_of(std::uint64_t seed) {
-  const Drawn d = drawn(seed);
-  std::vector<Specimen> states{packed(d.recipe)};
-  const int dimension = dimension_of(d.recipe.shape), axis = dimension - 1;
-  Rve rve(states[0]);
-  const Matrix3 start = rve.stress();
-  const double step = d.kappa > stiff ? 5e-5 : 5e-4;
-  for (int k = 1; k <= 100; ++k) {
-    const bool coarse = d.kappa > stiff / 5 && k != 19 && k != 20 && k < 99;
-    Specimen s = rve.specimen();
-    if ((s.solver.target_unbalanced > 0) != coarse) {
-      s.solver.target_unbalanced = coarse ? 0.05 : 0;
-      rve = Rve(s);
-    }
-    std::vector<protocol::HeldStress> held;
-    for (int i = 0; i < axis; ++i) held.push_back({i, i, start(i, i), std::abs(start(i, i))});
-    Matrix3 gradient = Matrix3::Zero();
-    gradient(axis, axis) = -step;
-    rve.apply(protocol::mixed_target(gradient, held, rve.stress(), dimension, k > 1), 0);
-    if (k == 20 || k == 100) states.push_back(rve.specimen());
-  }
-  return states;
-}
 
 /// Of unit length, but for the rotation.
 Matrix3 way(int dimension, std::size_t direction, Random& random) {
@@ -241,6 +78,8 @@ struct Increment {
   bool known = false;
   Response made;
   std::uint64_t substeps = 0;  ///< that it took, those of copies too
+  std::size_t events = 0;      ///< interactions that ended or formed in it
+  double jump = 0;             ///< root of the sum of squares of what each of them gave to the stress, Pa
   bool failed = false;
   std::string why;
 
@@ -282,8 +121,9 @@ std::vector<Increment> increments_of(std::uint64_t seed, int state, std::size_t 
     Increment& i = all[k];
     i.seed = seed;
     i.state = state;
-    i.direction = k % 5;
-    const double shortest = seed >= first_of_kinds && k % 7 != 6 ? -3 : -6;
+    const bool interacting = seed >= first_with_interactions;
+    i.direction = (interacting ? k + seed / 5 + std::size_t(state) : k) % 5;
+    const double shortest = seed >= first_of_kinds && !interacting && k % 7 != 6 ? -3 : -6;
     i.length = random.power(shortest, std::min(-2.0, 2 - std::log10(kappa)));  // beyond, no truth can be known
     i.gradient = i.length * way(dimension, i.direction, random);
     double value[11];
@@ -313,6 +153,24 @@ std::vector<Increment> increments_of(std::uint64_t seed, int state, std::size_t 
   return all;
 }
 
+/// Interactions that act, and what each gives to the stress, Pa.
+using Acting = std::map<std::tuple<int, std::int32_t, std::int32_t>, double>;
+Acting acting_in(const Rve& rve) {
+  Acting all;
+  const Network net = rve.network();
+  for (const InteractionState& i : net.interactions)
+    all[{i.kind, i.i, i.j}] += i.force().norm() * i.branch.norm() / net.cell.volume();
+  return all;
+}
+/// Notes those that ended and formed.
+void note_events(const Acting& before, const Acting& after, Increment& i) {
+  double squares = 0;
+  for (const auto& [from, to] : {std::pair{&before, &after}, {&after, &before}})
+    for (const auto& [pair, stress] : *from)
+      if (!to->contains(pair)) ++i.events, squares += stress * stress;
+  i.jump = std::sqrt(squares);
+}
+
 std::mutex files;  // of HDF5
 
 std::vector<Increment> judged(std::uint64_t seed, std::size_t each, const std::string& folder) {
@@ -335,7 +193,9 @@ std::vector<Increment> judged(std::uint64_t seed, std::size_t each, const std::s
       try {
         Rve rve(s);
         i.before = rve.stress();
+        const Acting acting = acting_in(rve);
         i.made = rve.apply(i.gradient, 0);
+        note_events(acting, acting_in(rve), i);
         i.substeps = rve.grain_steps_made() / rve.size();
       } catch (const Error& error) {
         i.failed = true;
@@ -388,10 +248,11 @@ void write_lines(const std::vector<Increment>& all, const std::string& path) {
   if (out == nullptr) return;
   for (const Increment& i : all) {
     const Report& r = i.made.report;
-    std::fprintf(out, "%llu %d %zu %.4e %d %d %.6e %.6e %.6e %.6e %.6e %ld %d %.6e %.6e %llu\n",
+    std::fprintf(out, "%llu %d %zu %.4e %d %d %.6e %.6e %.6e %.6e %.6e %ld %d %.6e %.6e %zu %.6e %llu\n",
                  (unsigned long long)i.seed, percents[i.state], i.direction, i.length, int(i.known), int(i.failed),
                  i.error(), r.error_estimate, r.allowed_error, i.spread, r.unbalanced_ratio, r.substeps,
-                 int(r.tolerance_met), (i.truth - i.before).norm(), -i.before.trace(), (unsigned long long)i.substeps);
+                 int(r.tolerance_met), (i.truth - i.before).norm(), -i.before.trace(), i.events, i.jump,
+                 (unsigned long long)i.substeps);
     if (i.failed)
       std::fprintf(stderr, "seed %llu, %d %%, %s, %.2e: %s\n", (unsigned long long)i.seed, percents[i.state],
                    directions[i.direction], i.length, i.why.c_str());
@@ -438,7 +299,7 @@ int main(int argc, char** argv) {
               "met", "truly", "steps", "chaotic", "covered", "known");
   for (const auto& [seed, of] : of_seed)
     print(std::to_string(seed) + ": " + in_words(seed), of, [](const Increment&) { return true; });
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3 && first < first_with_interactions; ++k)
     print("after " + std::to_string(percents[k]) + " %", all, [&](const Increment& i) { return i.state == k; });
   for (std::size_t k = 0; k < 5; ++k) print(directions[k], all, [&](const Increment& i) { return i.direction == k; });
   for (int k = -6; k < -2; ++k)
@@ -447,6 +308,18 @@ int main(int argc, char** argv) {
   if (first < first_of_kinds) {
     print("fitted (even seeds)", all, [](const Increment& i) { return i.seed % 2 == 0; });
     print("held out (odd seeds)", all, [](const Increment& i) { return i.seed % 2 == 1; });
+  } else if (first >= first_with_interactions) {
+    for (std::size_t k = 0; k < 5; ++k) {
+      const std::string kind = interacting_kinds[k];
+      print(kind, all, [&](const Increment& i) { return i.seed % 5 == k; });
+      for (int state = 0; state < 3; ++state)
+        print(kind + ", " + (is_cemented(k) ? cemented_states : moist_states)[state], all,
+              [&](const Increment& i) { return i.seed % 5 == k && i.state == state; });
+      print(kind + (is_cemented(k) ? ", bonds break" : ", bridges form or rupture"), all,
+            [&](const Increment& i) { return i.seed % 5 == k && i.events > 0; });
+    }
+    print("events in the increment", all, [](const Increment& i) { return i.events > 0; });
+    print("none", all, [](const Increment& i) { return i.events == 0; });
   } else {
     constexpr const char* kinds[] = {"discs of little friction", "Hertz spheres of 1:4", "stiff spheres", "ellipses",
                                      "rolling discs"};

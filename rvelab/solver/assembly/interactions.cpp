@@ -314,6 +314,41 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
   return all;
 }
 
+namespace {
+
+/// InteractionSums::broken of a law that notes what it released.
+template <class Law>
+double squares_of_broken(const InteractionTable& t, double thickness) {
+  double sum = 0;
+  if constexpr (requires { Law::broken, Law::released; })
+    for (std::size_t k = 0; k < t.count; ++k) {
+      if (t.column[Law::broken][k] == 0) continue;
+      const double length = t.radius[0][k] + t.radius[1][k];
+      const auto unbroken = [&](int c) { return c == Law::broken ? 0 : t.column[std::size_t(c)][k]; };
+      sum += 2 * Law::stiffness(unbroken, 0.0, thickness).normal * t.column[Law::released][k] * (length * length);
+    }
+  return sum;
+}
+
+}  // namespace
+
+InteractionSums interaction_sums(const Model& model, const Assembly& assembly) {
+  InteractionSums sums;
+  for (const ActingInteraction& a : acting_interactions(model, assembly)) {
+    (a.normal_force > 0 ? sums.push : sums.pull) += std::abs(a.normal_force) * a.length;
+    sums.stiffness += std::max(0.0, a.stiffness.normal) * a.length * a.length;
+    // A sum, so that the order of the table, which each new list changes, does not count.
+    const auto [low, high] = std::minmax(model.id[a.i], model.id[a.j]);
+    std::uint64_t pair = (std::uint64_t(low) * 0x9e3779b97f4a7c15ULL) ^ std::uint64_t(high);
+    pair = (pair ^ (pair >> 29)) * 0xbf58476d1ce4e5b9ULL + std::uint64_t(a.kind);
+    sums.acting += pair ^ (pair >> 32);
+  }
+  const double thickness = model.dimension() == 2 ? model.thickness : 0;
+  for (const InteractionTable& t : assembly.pairs.interactions)
+    with_interaction_law(t.kind, [&](auto law) { sums.broken += squares_of_broken<decltype(law)>(t, thickness); });
+  return sums;
+}
+
 Matrix3 interaction_virial(const Model& model, const Assembly& assembly) {
   Matrix3 sum = Matrix3::Zero();
   for (const ActingInteraction& a : acting_interactions(model, assembly)) sum += a.force * a.branch.transpose();

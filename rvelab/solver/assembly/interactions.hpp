@@ -48,6 +48,17 @@ struct ActingInteraction {
 /// wanted; a bridge's is an integral, which stress control did not ask for (200 moist spheres: 50 times the time).
 std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly, bool energies = false);
 
+/// What control asks of them. `acting` changes whenever one begins or ceases to act; it hangs on the ids of their
+/// grains alone.
+struct InteractionSums {
+  double push = 0, pull = 0;  ///< of |f_n| l where they push and where they pull, N m
+  double stiffness = 0;       ///< of k_n l^2 where k_n > 0, N m
+  std::uint64_t acting = 0;
+  double broken =
+      0;  ///< of the squares of f l of those that have broken, N^2 m^2; f^2 = 2 k_n times what they released
+};
+InteractionSums interaction_sums(const Model& model, const Assembly& assembly);
+
 /// Their part of contact_virial, N m.
 Matrix3 interaction_virial(const Model& model, const Assembly& assembly);
 inline bool has_interactions(const Assembly& assembly) { return !assembly.pairs.interactions.empty(); }

@@ -25,12 +25,9 @@ EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
 }
 
 void EquilibriumCheck::begin_interval() {
-  const Model& model = state_.model();
   state_.masses().in_use = true;
   state_.masses().steps = 0;
-  const double overlap = state_.out_of_balance().mean_overlap;
-  state_.control().interval = {0, state_.stress(),
-                               network_stiffness(pressure(state_), overlap, 2 * model.mean_radius, model.hardening)};
+  state_.control().interval = {0, state_.stress(), network_stiffness(state_)};
 }
 
 void EquilibriumCheck::renew_interval() {

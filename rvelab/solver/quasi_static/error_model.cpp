@@ -16,7 +16,24 @@ bool by_tolerance(const State& state) {
   return state.model().options.fixed_substeps == 0 && state.model().options.target_unbalanced == 0;
 }
 
-double pressure(State& state) { return mean_pressure(state.stress(), state.model().dimension()); }
+double pressure(State& state) {
+  const int d = state.model().dimension();
+  const double mean = mean_pressure(state.stress(), d);
+  if (!has_interactions(state.assembly())) return mean;
+  return mean + 2 * state.interaction_sums().pull / (d * state.cell().volume());
+}
+
+double network_stiffness(State& state) {
+  const Model& model = state.model();
+  const double overlap = state.out_of_balance().mean_overlap, diameter = 2 * model.mean_radius;
+  if (!has_interactions(state.assembly()))
+    return network_stiffness(pressure(state), overlap, diameter, model.hardening);
+  // As accuracy.hpp, share_of_directions (1/dV) sum k l^2; the contacts bear what is left of the forces.
+  const InteractionSums& sums = state.interaction_sums();
+  const double volumes = model.dimension() * state.cell().volume();
+  return network_stiffness(pressure(state) - (sums.push + sums.pull) / volumes, overlap, diameter, model.hardening) +
+         share_of_directions * sums.stiffness / volumes;
+}
 
 double pressure_scale(State& state) { return std::max(pressure(state), least_pressure * state.reference().pressure); }
 
@@ -95,11 +112,11 @@ bool can_measure_lag(State& state) {
          pressure(state) > 0;
 }
 
-bool lag_is_due(State& state, long substeps) {
+bool lag_is_due(State& state, const JudgedIncrement& increment, long substeps) {
   const LagMeasurement& lag = state.control().lag;
   const bool first = lag.error_factor == 0 && (substeps >= least_measured || lag.steps >= check_interval);
   const bool changed = lag.steps >= changed_period && lag.strain > overlap_strain(state);
-  const bool due = first || changed || lag.steps >= measured_period;
+  const bool due = first || changed || increment.events || lag.steps >= measured_period;
   return due && can_measure_lag(state);
 }
 
@@ -122,6 +139,12 @@ void measure_lag(State& state) {
   control.constraint_ratio = constraint_ratio(state.model(), state.assembly());
 }
 
+/// Whether bridges pull grains together: forces without stiffness.
+bool is_moist(State& state) {
+  return has_interactions(state.assembly()) && state.interaction_sums().pull > 0 &&
+         !(state.interaction_sums().stiffness > 0);
+}
+
 void judge_tolerance(Report& report) {
   report.tolerance_met = report.error_estimate <= met_margin * report.allowed_error;
 }
@@ -142,7 +165,7 @@ void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& 
 void estimate_error(State& state, double allowed, const JudgedIncrement& increment, Report& report) {
   QuasiStaticControl& control = state.control();
   control.lag.strain += increment.strain;
-  if (increment.strain > 0 && lag_is_due(state, report.substeps)) measure_lag(state);
+  if (increment.strain > 0 && lag_is_due(state, increment, report.substeps)) measure_lag(state);
   const LagMeasurement& lag = control.lag;
   const bool from_rest = increment.start_error_factor > 0, known = lag.error_factor > 0;
   if (increment.strain > 0) control.after_short_start = from_rest && !known;
@@ -152,7 +175,8 @@ void estimate_error(State& state, double allowed, const JudgedIncrement& increme
   const double factor = from_rest ? increment.start_error_factor : fitted_error_factor(state);
   double behind = std::max(measured, fitted_margin * factor * scale);
   if (known && lag.steps == 0) behind = lag.grows ? slow_goes_on * measured : measured;
-  behind += increment.creep_error;
+  if (is_moist(state)) behind *= moist_lag;
+  behind += increment.creep_error + order_of_breaking * increment.broken_stress;
   report.allowed_error = allowed;
   report.error_estimate = std::sqrt(behind * behind + increment.extrapolation_error * increment.extrapolation_error) +
                           least_share * (increment.allowed_of_path > 0 ? increment.allowed_of_path : allowed);

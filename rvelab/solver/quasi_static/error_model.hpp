@@ -10,7 +10,11 @@ namespace rvelab {
 /// Whether sub-steps follow from tolerances, not from a given number or unbalanced ratio.
 bool by_tolerance(const State& state);
 
-double pressure(State& state);  ///< mean, Pa
+/// That of the sizes of the normal forces, Pa: the mean pressure, and twice the tension that bonds and bridges bear. A
+/// cemented specimen in tension, or a moist one without pressure, is no gas.
+double pressure(State& state);
+/// Of contacts and bonds, |C : d eps|/strain, Pa.
+double network_stiffness(State& state);
 /// Scale of errors, Pa: the pressure, or a thousandth of the reference where it is less.
 double pressure_scale(State& state);
 /// |C : d eps| of a strain, Pa.
@@ -51,6 +55,8 @@ struct JudgedIncrement {
   double extrapolation_error = 0;  ///< Pa, of deferred strain; independent of the others
   double allowed_of_path = 0;      ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
   double start_error_factor = 0;   ///< K of a start from rest (strain_step.hpp); 0: another increment
+  bool events = false;             ///< interactions ended or formed in it (events.hpp)
+  double broken_stress = 0;        ///< Pa, that bonds which broke in it bore
 };
 
 /// Sets report.error_estimate, allowed_error and tolerance_met, with `allowed` in Pa.

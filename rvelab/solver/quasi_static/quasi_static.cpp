@@ -10,6 +10,7 @@
 #include "rvelab/solver/quasi_static/constants.hpp"
 #include "rvelab/solver/quasi_static/deferred.hpp"
 #include "rvelab/solver/quasi_static/error_model.hpp"
+#include "rvelab/solver/quasi_static/events.hpp"
 #include "rvelab/solver/quasi_static/relaxation.hpp"
 #include "rvelab/solver/quasi_static/strain_step.hpp"
 
@@ -40,7 +41,8 @@ class CheckedSteps {
         strain_(path.strain()),
         most_(most_substeps(state, strain_)),
         fewest_(std::min(start.substeps, most_)),
-        from_rest_(start.start_error_factor > 0) {}
+        from_rest_(start.start_error_factor > 0),
+        events_(state) {}
 
   /// Makes them; `substeps` were made before and counts on.
   void make(long& substeps) {
@@ -58,11 +60,13 @@ class CheckedSteps {
       done = next;
       substeps += steps;
       state_.control().interval.strain += (fraction_ - before_) * strain_;
-      end_is_checked_ = fraction_ == 1 ? check_.is_due_at_end(substeps, strain_) : check_.is_due();
+      end_is_checked_ =
+          fraction_ == 1 ? check_.is_due_at_end(substeps, strain_) || events_.happened(state_) : check_.is_due();
       if (end_is_checked_) check();
     }
   }
   bool end_is_checked() const { return end_is_checked_; }
+  const InteractionEvents& events() const { return events_; }
   /// Root of the sum of squares of the unbalanced ratios that the checks before the end found.
   double path_unbalance() const { return std::sqrt(squares_); }
 
@@ -119,6 +123,7 @@ class CheckedSteps {
   const StrainPath& path_;
   double strain_, most_, fewest_;
   bool from_rest_;
+  InteractionEvents events_;
   double fraction_ = 0, before_ = 0, squares_ = 0;
   bool by_strain_ = true;  ///< the strain per step decides their number
   bool end_is_checked_ = false;
@@ -186,7 +191,9 @@ Report load_quasi_static(State& state, FrameSplit whole) {
   const JudgedIncrement judged{.strain = strain,
                                .unbalanced_ratio = control.unbalanced_ratio,
                                .creep_error = relaxed.creep,
-                               .start_error_factor = start.start_error_factor};
+                               .start_error_factor = start.start_error_factor,
+                               .events = substeps.events().happened(state),
+                               .broken_stress = substeps.events().broken_stress(state)};
   estimate_by_tolerances(state, elastic_change, stress_before, judged, report);
   add_error_of_path(state, strain, substeps.path_unbalance(), report);
   note_slope(state, whole.stretch, stress_before, (state.cell().rotation.array() == start_frame.array()).all());

@@ -8,6 +8,7 @@
 #include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/quasi_static/check.hpp"
 #include "rvelab/solver/quasi_static/error_model.hpp"
+#include "rvelab/solver/quasi_static/events.hpp"
 #include "rvelab/solver/quasi_static/quasi_static.hpp"
 #include "rvelab/solver/quasi_static/recovery.hpp"
 #include "rvelab/solver/quasi_static/servo.hpp"
@@ -38,7 +39,8 @@ class StressControl {
         servo_(target, state.model().dimension(), stress(), Servo::Missed::evenly),
         check_(state),
         path_{target, state.model().dimension()},
-        recovery_(target, strain_of_held(state, servo_), state.model().dimension()) {}
+        recovery_(target, strain_of_held(state, servo_), state.model().dimension()),
+        events_(state) {}
 
   Report make(Matrix3& gradient);
 
@@ -57,6 +59,7 @@ class StressControl {
   EquilibriumCheck check_;
   TargetPath path_;
   Recovery recovery_;
+  InteractionEvents events_;
   Report report_;
   double fraction_ = 0, strain_ = 0;  ///< of the target; expected of the whole
   long since_update_ = 0;             ///< sub-steps since the gain was renewed
@@ -103,7 +106,11 @@ Report StressControl::judged() {
   report_.unbalanced_ratio = state_.control().unbalanced_ratio;
   judge_equilibrium(state_, report_);
   estimate_error(state_, held_tolerance(state_) * pressure_scale(state_),
-                 {.strain = strain_, .unbalanced_ratio = report_.unbalanced_ratio}, report_);
+                 {.strain = strain_,
+                  .unbalanced_ratio = report_.unbalanced_ratio,
+                  .events = events_.happened(state_),
+                  .broken_stress = events_.broken_stress(state_)},
+                 report_);
   return report_;
 }
 
@@ -132,7 +139,7 @@ Report StressControl::make(Matrix3& gradient) {
     expect_substeps();
     check(waiting, change);
   }
-  if (!checked_ && check_.is_due_at_end(report_.substeps, strain_)) check_.check();
+  if (!checked_ && (check_.is_due_at_end(report_.substeps, strain_) || events_.happened(state_))) check_.check();
   gradient = path_.gradient;
   return judged();
 }

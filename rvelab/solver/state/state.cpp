@@ -84,6 +84,10 @@ const OutOfBalance& State::out_of_balance() {
   return balance_.of(generation_, [this] { return balance_of(model_, assembly_); });
 }
 
+const InteractionSums& State::interaction_sums() {
+  return interaction_sums_.of(generation_, [this] { return rvelab::interaction_sums(model_, assembly_); });
+}
+
 const RowSums& State::row_sums() {
   return sums_.of(generation_, [this] { return rvelab::row_sums(model_, assembly_); });
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/report.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
@@ -67,6 +68,7 @@ class State {
 
   const Matrix3& stress();  ///< of the contacts, cell frame, Pa
   const OutOfBalance& out_of_balance();
+  const InteractionSums& interaction_sums();
   const RowSums& row_sums();  ///< of stiffness; they take as long as two sub-steps
   /// The same. Throws IncrementFailed where the cell is too thin, an overlap beyond the limit or a value not finite.
   const OutOfBalance& checked_balance();
@@ -147,6 +149,7 @@ class State {
   Derived<Matrix3> stress_;
   Derived<OutOfBalance> balance_;
   Derived<RowSums> sums_;
+  Derived<InteractionSums> interaction_sums_;
   // While a trial is pending: those of the state that is not in `assembly_`.
   std::uint64_t other_generation_ = 0;
   Derived<Matrix3> other_stress_;
