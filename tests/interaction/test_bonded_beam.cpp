@@ -18,7 +18,7 @@ using namespace rvelab::test;
 
 namespace {
 
-constexpr double a = 1, grain_radius = 0.45, bond_radius = 0.3, kn = 2e6, ks = 0.2e6;
+constexpr double a = 1, grain_radius = 0.45, cement_radius = 0.3, beam_kn = 2e6, beam_ks = 0.2e6;
 
 struct Beam {
   Specimen specimen;
@@ -42,9 +42,9 @@ struct Beam {
     made.i = std::int32_t(i), made.j = std::int32_t(j);
     double columns[interaction_columns<ParallelBond>()] = {};
     columns[ParallelBond::length] = (specimen.grains.position[j] - specimen.grains.position[i]).norm();
-    columns[ParallelBond::radius] = bond_radius;
-    columns[ParallelBond::normal_stiffness] = kn;
-    columns[ParallelBond::shear_stiffness] = ks;
+    columns[ParallelBond::radius] = cement_radius;
+    columns[ParallelBond::normal_stiffness] = beam_kn;
+    columns[ParallelBond::shear_stiffness] = beam_ks;
     columns[ParallelBond::tensile_strength] = columns[ParallelBond::cohesion] = 1e30;
     columns[ParallelBond::moment_factor] = 1;
     take_columns<ParallelBond>(columns, made);
@@ -158,9 +158,9 @@ TEST_CASE("a cantilever of bonded grains bends as Timoshenko's beam", "[bond]") 
     for (const int n : {3, 12}) {
       INFO(name(shape) << ", " << n << " bonds");
       const Cantilever beam(shape, n);
-      const Section section = section_of(shape, bond_radius);
-      const double L = n * a, EI = kn * section.inertia * a;
-      const double GA = 1 / (1 / (ks * section.area * a) - a * a / (12 * EI));
+      const Section section = section_of(shape, cement_radius);
+      const double L = n * a, EI = beam_kn * section.inertia * a;
+      const double GA = 1 / (1 / (beam_ks * section.area * a) - a * a / (12 * EI));
       Rve rve(beam.specimen);
       beam.pull(rve, 1e-3 * L * 3 * EI / (L * L * L));  // a deflection of some thousandth of its length
       REQUIRE(settle(rve, beam, beam.load(rve)));
@@ -187,7 +187,7 @@ TEST_CASE("a cantilever of bonded grains breaks at the load, the bond and by the
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
     INFO(name(shape));
     const int n = 8;
-    const Section section = section_of(shape, bond_radius);
+    const Section section = section_of(shape, cement_radius);
     {
       // The moment is largest in the bond at the clamp: M R/I = tensile strength.
       Cantilever beam(shape, n);
@@ -195,14 +195,14 @@ TEST_CASE("a cantilever of bonded grains breaks at the load, the bond and by the
       for (int b = 0; b < n; ++b)
         set_column(bonds_of(beam.specimen)[std::size_t(b)], ParallelBond::tensile_strength, strength);
       Rve rve(beam.specimen);
-      const double expected = strength * section.inertia / (bond_radius * lever);
+      const double expected = strength * section.inertia / (cement_radius * lever);
       const std::size_t which = broken_by(rve, beam, expected);
       REQUIRE(which == 0);
       const Bond broken = bonds_of(rve)[0];
       CHECK(column(broken, ParallelBond::broken) == 1);
       const double moment = expected * lever;
       const double energy =
-          0.5 * moment * moment / (kn * section.inertia) + 0.5 * expected * expected / (ks * section.area);
+          0.5 * moment * moment / (beam_kn * section.inertia) + 0.5 * expected * expected / (beam_ks * section.area);
       CHECK(column(broken, ParallelBond::released) == Approx(energy).epsilon(0.03));
     }
     // The shear force is the same everywhere: the weakest breaks, P/A = cohesion.
@@ -264,12 +264,12 @@ TEST_CASE("a beam of layers keeps its sections plane, and breaks in its outermos
     for (const int m : {2, 5}) {
       INFO(name(shape) << ", " << m << " layers");
       const int n = 12;
-      const Section section = section_of(shape, bond_radius);
+      const Section section = section_of(shape, cement_radius);
       LatticeBeam beam(shape, n, m);
       const double height = 0.5 * (m - 1) * a, L = n * a;
       double EI = 0;
       for (int j = 0; j < m; ++j)
-        EI += beam.depth * a * kn * (section.area * std::pow((j - 0.5 * (m - 1)) * a, 2) + section.inertia);
+        EI += beam.depth * a * beam_kn * (section.area * std::pow((j - 0.5 * (m - 1)) * a, 2) + section.inertia);
       {
         Rve rve(beam.specimen);
         const double turn = 1e-4, curvature = turn / L;
@@ -288,7 +288,7 @@ TEST_CASE("a beam of layers keeps its sections plane, and breaks in its outermos
           for (const std::size_t b : section_bonds) {
             const std::size_t i = std::size_t(bonds[b].i), j = std::size_t(bonds[b].j);
             const double stretch = (x0[j] + u[j] - x0[i] - u[i]).norm() - a;
-            moment -= kn * section.area * stretch * x0[i][1] + triple(bonds[b], ParallelBond::bending_moment)[2];
+            moment -= beam_kn * section.area * stretch * x0[i][1] + triple(bonds[b], ParallelBond::bending_moment)[2];
           }
           CHECK(moment == Approx(EI * curvature).epsilon(1e-3));
         }
@@ -299,7 +299,7 @@ TEST_CASE("a beam of layers keeps its sections plane, and breaks in its outermos
       const std::size_t weak = beam.along[4].front();
       REQUIRE(beam.specimen.grains.position[std::size_t(bonds_of(beam.specimen)[weak].i)][1] == -height);
       set_column(bonds_of(beam.specimen)[weak], ParallelBond::tensile_strength, 0.97 * strength);
-      const double expected = 0.97 * strength / (kn * a * (height + bond_radius)) * L, step = 0.01 * expected;
+      const double expected = 0.97 * strength / (beam_kn * a * (height + cement_radius)) * L, step = 0.01 * expected;
       Rve rve(beam.specimen);
       double turn = 0.9 * expected;
       REQUIRE(beam.bend(rve, turn, 4000));
