@@ -158,7 +158,7 @@ def breaking(program, folder, lmp):
                 same = np.abs(rows["rvelab, at the same rate"][:, k] / other[:, k] - 1).max() <= scatter
                 verdict(f"{what}: {name} over {peer}, largest difference", f"{100 * difference:.2f} %",
                         f"scatter, {100 * scatter:.1f} %", difference <= scatter, same and difference < 0.05,
-                        "quasi-static increments make few sub-steps, by the tolerances some three here, and the break-up "
+                        "quasi-static increments by the tolerances make one or two sub-steps here, and the break-up "
                         "lags behind the strain; the same law at the peer's rate gives the peer's peak")
 
 
