@@ -2,8 +2,8 @@
 // periodic cell can.
 //
 // A chain of equal grains, a apart, is a cantilever. A load P at its end gives each bond the shear force P and bond b,
-// whose middle is at (b - 1/2) a, the moment P (L - (b - 1/2) a). The spring of the bond turns its ends by M/(kn
-// I) against each other, its slip is P/(ks A), and
+// whose middle is at (b - 1/2) a, the moment P (L - (b - 1/2) a). The spring of the bond turns its ends by M/(kn I)
+// against each other, its slip is P/(ks A), and
 //   theta_b - theta_(b-1) = M_b/(kn I),   v_b - v_(b-1) = P/(ks A) + a (theta_(b-1) + theta_b)/2
 // Summed, with EI = kn I a, at each grain exactly
 //   theta = P/EI (x L - x^2/2),   v = P/EI (x^2 L/2 - x^3/6) + P x/GA,   1/GA = 1/(ks A a) - a^2/(12 EI)
@@ -18,7 +18,7 @@ using namespace rvelab::test;
 
 namespace {
 
-constexpr double a = 1, beam_grain = 0.45, glue_radius = 0.3, glue_kn = 2e6, glue_ks = 0.2e6;
+constexpr double a = 1, beam_grain = 0.45, cement_radius = 0.3, beam_kn = 2e6, beam_ks = 0.2e6;
 
 struct Beam {
   Specimen specimen;
@@ -42,9 +42,9 @@ struct Beam {
     made.i = std::int32_t(i), made.j = std::int32_t(j);
     double columns[interaction_columns<ParallelBond>()] = {};
     columns[ParallelBond::length] = (specimen.grains.position[j] - specimen.grains.position[i]).norm();
-    columns[ParallelBond::radius] = glue_radius;
-    columns[ParallelBond::normal_stiffness] = glue_kn;
-    columns[ParallelBond::shear_stiffness] = glue_ks;
+    columns[ParallelBond::radius] = cement_radius;
+    columns[ParallelBond::normal_stiffness] = beam_kn;
+    columns[ParallelBond::shear_stiffness] = beam_ks;
     columns[ParallelBond::tensile_strength] = columns[ParallelBond::cohesion] = 1e30;
     columns[ParallelBond::moment_factor] = 1;
     take_columns<ParallelBond>(columns, made);
@@ -158,9 +158,9 @@ TEST_CASE("a cantilever of bonded grains bends as Timoshenko's beam", "[bond]") 
     for (const int n : {3, 12}) {
       INFO(name(shape) << ", " << n << " bonds");
       const Cantilever beam(shape, n);
-      const Section section = section_of(shape, glue_radius);
-      const double L = n * a, EI = glue_kn * section.inertia * a;
-      const double GA = 1 / (1 / (glue_ks * section.area * a) - a * a / (12 * EI));
+      const Section section = section_of(shape, cement_radius);
+      const double L = n * a, EI = beam_kn * section.inertia * a;
+      const double GA = 1 / (1 / (beam_ks * section.area * a) - a * a / (12 * EI));
       Rve rve(beam.specimen);
       beam.pull(rve, 1e-3 * L * 3 * EI / (L * L * L));  // a deflection of some thousandth of its length
       REQUIRE(settle(rve, beam, beam.load(rve)));
@@ -187,7 +187,7 @@ TEST_CASE("a cantilever of bonded grains breaks at the load, the bond and by the
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
     INFO(name(shape));
     const int n = 8;
-    const Section section = section_of(shape, glue_radius);
+    const Section section = section_of(shape, cement_radius);
     {
       // The moment is largest in the bond at the clamp: M R/I = tensile strength.
       Cantilever beam(shape, n);
@@ -195,14 +195,14 @@ TEST_CASE("a cantilever of bonded grains breaks at the load, the bond and by the
       for (int b = 0; b < n; ++b)
         set_column(bonds_of(beam.specimen)[std::size_t(b)], ParallelBond::tensile_strength, strength);
       Rve rve(beam.specimen);
-      const double expected = strength * section.inertia / (glue_radius * lever);
+      const double expected = strength * section.inertia / (cement_radius * lever);
       const std::size_t which = broken_by(rve, beam, expected);
       REQUIRE(which == 0);
       const Bond broken = bonds_of(rve)[0];
       CHECK(column(broken, ParallelBond::broken) == 1);
       const double moment = expected * lever;
       const double energy =
-          0.5 * moment * moment / (glue_kn * section.inertia) + 0.5 * expected * expected / (glue_ks * section.area);
+          0.5 * moment * moment / (beam_kn * section.inertia) + 0.5 * expected * expected / (beam_ks * section.area);
       CHECK(column(broken, ParallelBond::released) == Approx(energy).epsilon(0.03));
     }
     // The shear force is the same everywhere: the weakest breaks, P/A = cohesion.
@@ -264,12 +264,12 @@ TEST_CASE("a beam of layers keeps its sections plane, and breaks in its outermos
     for (const int m : {2, 5}) {
       INFO(name(shape) << ", " << m << " layers");
       const int n = 12;
-      const Section section = section_of(shape, glue_radius);
+      const Section section = section_of(shape, cement_radius);
       LatticeBeam beam(shape, n, m);
       const double height = 0.5 * (m - 1) * a, L = n * a;
       double EI = 0;
       for (int j = 0; j < m; ++j)
-        EI += beam.depth * a * glue_kn * (section.area * std::pow((j - 0.5 * (m - 1)) * a, 2) + section.inertia);
+        EI += beam.depth * a * beam_kn * (section.area * std::pow((j - 0.5 * (m - 1)) * a, 2) + section.inertia);
       {
         Rve rve(beam.specimen);
         const double turn = 1e-4, curvature = turn / L;
@@ -288,19 +288,18 @@ TEST_CASE("a beam of layers keeps its sections plane, and breaks in its outermos
           for (const std::size_t b : section_bonds) {
             const std::size_t i = std::size_t(bonds[b].i), j = std::size_t(bonds[b].j);
             const double stretch = (x0[j] + u[j] - x0[i] - u[i]).norm() - a;
-            moment -= glue_kn * section.area * stretch * x0[i][1] + triple(bonds[b], ParallelBond::bending_moment)[2];
+            moment -= beam_kn * section.area * stretch * x0[i][1] + triple(bonds[b], ParallelBond::bending_moment)[2];
           }
           CHECK(moment == Approx(EI * curvature).epsilon(1e-3));
         }
       }
-      // Tension at the rim of the lowest layer: glue_kn a theta' (height + R) = strength, first in the bond that is
-      // weaker.
+      // Tension at the rim of the lowest layer: kn a theta' (height + R) = strength, first in the bond that is weaker.
       const double strength = 100;
       for (Bond& b : bonds_of(beam.specimen)) set_column(b, ParallelBond::tensile_strength, strength);
       const std::size_t weak = beam.along[4].front();
       REQUIRE(beam.specimen.grains.position[std::size_t(bonds_of(beam.specimen)[weak].i)][1] == -height);
       set_column(bonds_of(beam.specimen)[weak], ParallelBond::tensile_strength, 0.97 * strength);
-      const double expected = 0.97 * strength / (glue_kn * a * (height + glue_radius)) * L, step = 0.01 * expected;
+      const double expected = 0.97 * strength / (beam_kn * a * (height + cement_radius)) * L, step = 0.01 * expected;
       Rve rve(beam.specimen);
       double turn = 0.9 * expected;
       REQUIRE(beam.bend(rve, turn, 4000));

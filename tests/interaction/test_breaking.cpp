@@ -128,7 +128,7 @@ TEST_CASE("a bridge that ruptures within an increment takes its pull with it, wi
   Rve start(s);
   Water water;
   water.volume_ratio = 1e-3;
-  start.set_water(water);
+  set_settings<CapillaryBridge>(start, {water});
   REQUIRE(start.interactions().ListOf<CapillaryBridge>::items.size() == std::size_t(number));
   // The overlaps are 1e-3 of the row_spacing, the rupture gap is some 5e-2 of it: one of six opens by all of the
   // strain.

@@ -30,11 +30,13 @@ def build():
     # Without "ratcheting avoided" arms are those to the middle of gap or overlap, and no slip is scaled.
     meet = Ig2_Sphere_Sphere_ScGeom6D(interactionDetectionFactor=reach, avoidGranularRatcheting=False)
     law = Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True, always_use_moment_law=False)
+    cement = Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)
     O.engines = [ForceResetter(), InsertionSortCollider([box], allowBiggerThanPeriod=True),
-                 InteractionLoop([meet], [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)], [law]),
+                 InteractionLoop([meet], [cement], [law]),
                  NewtonIntegrator(damping=0.3)]
     O.dt = 1e-30  # a first step that goes nowhere finds the pairs
     O.run(1, True)
+    cement.setCohesionNow = False  # else the next step gives all bonds the strength of the material
     box.aabbEnlargeFactor = meet.interactionDetectionFactor = 1
     bond_of = {pair: k for k, pair in enumerate(zip(JOB["i"], JOB["j"]))}
     found = {tuple(sorted((c.id1, c.id2))): c for c in O.interactions if c.isReal}
