@@ -26,7 +26,7 @@ struct BeamLoad {
   double rim = 0;                    ///< A R/I, the stress of a moment at the rim times A R: 4, of a rectangle 3
 };
 
-/// Notes the energy of bonds that break now in their column `released`; `of(energy)` adds up that of their springs.
+/// Adds the energy of bonds that break now to their column `released`; `of(energy)` adds up that of their springs.
 template <class V, class Of>
 static inline __attribute__((always_inline)) void book_release(const InteractionArrays& p, int released, long at, V was,
                                                                V how, const Of& of) {
@@ -38,7 +38,7 @@ static inline __attribute__((always_inline)) void book_release(const Interaction
     return there ? 0.5 * squared / (there ? stiffness : one) : zero;
   };
   const V last = load_as<V>(p.column[released] + at);
-  store_as(p.column[released] + at, (now != zero) ? of(energy) : last);
+  store_as(p.column[released] + at, (now != zero) ? last + of(energy) : last);
 }
 
 template <class Criterion>
