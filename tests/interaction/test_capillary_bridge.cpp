@@ -187,17 +187,18 @@ TEST_CASE("moist packings: trials, restarts and released buffers bit by bit", "[
 TEST_CASE("the elastic tangent of moist packings is what small steps measure", "[bridge]") {
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
     INFO(name(shape));
-    const int side = dimension_of(shape) == 2 ? 8 : 5;
+    // Nine: discs in an even square turn like gears, a motion that nothing but round-off resists.
+    const int side = dimension_of(shape) == 2 ? 9 : 5;
     Rve rve = at_rest(disordered(shape, side, linear_material(2e4, 1e4, 1e6), Law::linear_stiffness, 0.51, 4), 1e-8);
     set_water(rve, by_suction(300));
     for (int k = 0; k < 12; ++k) rve.apply(gradient(1e-3, 2e-3, 0, 1e-3), 0);  // some contacts open, their bridges hold
-    REQUIRE(rve.relax(1e-9, 2'000'000).target_held);
+    REQUIRE(rve.relax(1e-10, 2'000'000).target_held);
     const Network net = rve.network();
     const auto apart = std::count_if(net.interactions.begin(), net.interactions.end(),
                                      [](const InteractionState& c) { return c.overlap < 0; });
     CHECK(apart > 0);  // those whose pull changes with the gap
     const Eigen::MatrixXd tangent = elastic_tangent(net), measured = probe_stiffness(rve, 1e-8).stiffness;
-    CHECK((tangent - measured).norm() < 5e-3 * measured.norm());
+    CHECK((tangent - measured).norm() < 1e-5 * measured.norm());
   }
 }
 
