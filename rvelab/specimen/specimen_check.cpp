@@ -410,24 +410,26 @@ class Relations {
     each_field<Law>(item, [&](const InteractionField& field, const auto& value) {
       if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
         if (!field.whole) return;
-        const std::string what = at(std::string(Law::name) + "/" + field.name, k) + " = " + in_words(value);
-        if (value != std::floor(value)) refuse(what + " is out of range; allowed: a whole number");
-        if (!Law::kept(column)) refuse(what + " is out of range; allowed: 1, of what is there");
+        const bool presence = field.allowed.high == 1;  // a file holds what is there
+        if (presence ? value != 1 : value != std::floor(value))
+          refuse(at(std::string(Law::name) + "/" + field.name, k) + " = " + in_words(value) +
+                 " is out of range; allowed: " + (presence ? "1, of what is there" : "a whole number"));
       }
     });
     const double radii = s.grains.radius[std::size_t(item.i)] + s.grains.radius[std::size_t(item.j)];
     const Vector3 branch = s.grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
                            s.grains.position[std::size_t(item.i)];
     const double now = branch.stableNorm();
-    const auto check_length = [&](const char* field, double made) {
+    const auto check_length = [&](const char* field, double value, double made) {
       if (now > 10 * made || made > 10 * now)
-        refuse(at(std::string(Law::name) + "/" + field, k) + ": made with " + in_words(made) +
-               " m between centres that are " + in_words(now) +
-               " m apart; allowed: a tenth to ten times that, of what still acts");
+        refuse(at(std::string(Law::name) + "/" + field, k) + " = " + in_words(value) + " of a pair whose centres are " +
+               in_words(now) +
+               " m apart; allowed: a distance as it was made of a tenth to ten times that, of what still acts");
     };
     if (!Law::acts(column, now - radii)) return;
-    if constexpr (requires { Law::length; }) check_length("length_m", columns[Law::length]);
-    if constexpr (requires { Law::first_gap; }) check_length("gap_m", columns[Law::first_gap] + radii);
+    if constexpr (requires { Law::length; }) check_length("length_m", columns[Law::length], columns[Law::length]);
+    if constexpr (requires { Law::first_gap; })
+      check_length("gap_m", columns[Law::first_gap], columns[Law::first_gap] + radii);
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong

@@ -258,7 +258,7 @@ class Figures(unittest.TestCase):
             rvelab.plot(name, [rvelab.Rve(specimens["spheres"])])
 
     def test_mistakes_name_what_is_allowed(self) -> None:
-        with self.assertRaisesRegex(ValueError, "allowed: chains.* volumetric"):
+        with self.assertRaisesRegex(ValueError, "allowed: bonds, chains.* volumetric"):
             rvelab.plot("records", specimens["discs"])
         with self.assertRaisesRegex(rvelab.RvelabError, "not a record file"):
             rvelab.plot("stress_strain", specimens["discs"])

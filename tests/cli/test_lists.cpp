@@ -69,8 +69,8 @@ TEST_CASE("a name without separator and .toml is an installed protocol, anything
   CHECK(calibration.code == 0);
 
   expect_mistake(here.run("run biaxail --specimen S.h5"),
-                 "no protocol \"biaxail\" is installed; the nearest is biaxial; allowed: biaxial, biaxial_cemented, "
-                 "biaxial_extension, ");
+                 "no protocol \"biaxail\" is installed; the nearest is biaxial; allowed: adhesive_shear, biaxial, "
+                 "biaxial_cemented, biaxial_extension, ");
   expect_mistake(here.run("run biaxial.toml --specimen S.h5"), "biaxial.toml: no such file");
   expect_mistake(here.run("run ./biaxial --specimen S.h5"), "./biaxial: no such file");
 }

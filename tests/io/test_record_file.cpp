@@ -103,6 +103,7 @@ TEST_CASE("the manual lists exactly the datasets of a file, with their types, sh
   io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
   test.checkpoint = random_checkpoint(8);
+  test.checkpoint.specimen = with_every_interaction(8);
   const auto snapshot = io::encode_snapshot(12, with_every_interaction(8));
   io::Journal journal(folder / "snapshots");
   journal.begin();

@@ -215,6 +215,7 @@ TEST_CASE("old checkpoints do not fill the disc") {
   const Folder folder;
   const records::TestResult result = random_result(6, 3);
   records::Checkpoint checkpoint{{}, random_specimen(7, 3000, 6000)};
+  static_cast<Interactions&>(checkpoint.specimen) = {};
   checkpoint.progress.stage = 1;
   checkpoint.progress.phase = 1;
   {

@@ -72,7 +72,7 @@ void take_lengths(const Grains& grains, Model& model) {
 /// The scaled masses that a specimen brings; the arrays of the state are empty while it is open.
 void take_scaled_inertia(Assembly& assembly) {
   ScaledMasses& masses = assembly.state.masses;
-  if (assembly.state.last_step.loading == Loading::at_rate || masses.mass.empty()) masses = {};
+  if (assembly.state.last_step.loading == Loading::at_rate || !masses.in_use || masses.mass.empty()) masses = {};
   for (std::size_t g = 0; masses.in_use && g < masses.mass.size(); ++g) {
     assembly.mass[g] = masses.mass[g];
     assembly.inverse_mass[g] = 1 / masses.mass[g];
