@@ -101,6 +101,8 @@ struct CapillaryBridge {
   /// Water of which the bridges of these pairs fill that part of the pores (m^3); nullptr, or why there is none.
   static const char* settings_for(double saturation, double pore_volume, const GrainPair* pairs, long count,
                                   Water& water);
+  /// The part of the pores that they fill.
+  static double target_of(const Water& water, double pore_volume, const GrainPair* pairs, long count);
 
   static const char* misfit(const Water& water, const SpecimenKind& specimen) {
     if ((water.suction > 0) == (water.volume_ratio > 0)) return "suction_Pa or volume_ratio above 0, one of them";

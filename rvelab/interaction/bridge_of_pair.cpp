@@ -72,9 +72,7 @@ const char* CapillaryBridge::settings_for(double saturation, double pore_volume,
   const auto held = [&](double suction) {
     Water at = water;
     at.suction = suction;
-    double sum = 0;
-    for (long k = 0; k < count; ++k) sum += content_of_bridge(at, pairs[k]).volume;
-    return sum;
+    return target_of(at, 1, pairs, count);
   };
   double low = 1e-3 * water.surface_tension / pairs[0].radius_i, high = 1e7 * low;  // volume falls with suction
   if (held(low) < wanted) return "arcs would be a thousand times as wide as grains";
@@ -85,6 +83,12 @@ const char* CapillaryBridge::settings_for(double saturation, double pore_volume,
   }
   water.suction = high;
   return nullptr;
+}
+
+double CapillaryBridge::target_of(const Water& water, double pore_volume, const GrainPair* pairs, long count) {
+  double sum = 0;
+  for (long k = 0; k < count; ++k) sum += content_of_bridge(water, pairs[k]).volume;
+  return sum / pore_volume;
 }
 
 BridgeContent content_of_bridge(const Water& water, const GrainPair& pair) {

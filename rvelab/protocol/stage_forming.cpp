@@ -1,6 +1,5 @@
 // Stages that give a specimen what interactions form from (water), change it, or take it away: one kind for each law
 // whose interactions form by themselves, with the keys that the law declares. Declared in stage_kinds.hpp.
-#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -54,7 +53,8 @@ struct Forming : KindOf<FormingSettings<Law>> {
   void read(TableReader& reader, Protocol&) override {
     reader.boolean(Law::removal.name, stage.removed, Law::removal.meaning);
     Settings& settings = stage.settings;
-    const char* given = nullptr;
+    const char *given = nullptr, *first = nullptr;
+    bool allowed = true;
     for (const SettingsField<Settings>& field : Law::settings_fields) {
       double& value = settings.*field.value;
       const double usual = value;
@@ -63,6 +63,8 @@ struct Forming : KindOf<FormingSettings<Law>> {
       else
         value = reader.optional_number(field.name, field.unit, field.allowed, field.meaning).value_or(0);
       if (value != usual) given = field.name;
+      if (field.none_at_zero && first == nullptr) first = field.name;
+      allowed &= field.allowed.contains(value);
     }
     if constexpr (HasTarget<Law>) {
       stage.target =
@@ -79,8 +81,8 @@ struct Forming : KindOf<FormingSettings<Law>> {
     const char* misfit = Law::misfit(settings, {3, true});
     if (stage.removed && given != nullptr)
       reader.mistake(Law::removal.name, std::string("contradicts ") + given + "; remove one of them");
-    else if (!stage.removed && misfit != nullptr)
-      reader.mistake(given != nullptr ? given : std::begin(Law::settings_fields)->name,
+    else if (!stage.removed && allowed && misfit != nullptr)
+      reader.mistake(given != nullptr ? given : first,
                      std::string(given != nullptr ? "contradicts the others, or lacks one" : "is missing") + "; give " +
                          misfit + ", or " + Law::removal.name + " = true");
   }
@@ -90,16 +92,23 @@ struct Forming : KindOf<FormingSettings<Law>> {
     return why == nullptr ? "" : std::string("give ") + why;
   }
 
+  /// Those of the stage, or those that make its target.
   Settings settings_in(const Rve& rve) const {
     Settings settings = stage.settings;
     if constexpr (HasTarget<Law>) {
-      if (!stage.target) return settings;
       const Network net = rve.network();
       const std::vector<GrainPair> pairs = formed_pairs<Law>(net);
-      const char* why = Law::settings_for(*stage.target, pore_volume(net), pairs.data(), long(pairs.size()), settings);
-      if (why != nullptr)
-        throw InputError(std::string("stage.") + name() + "." + Law::target.name + " = " + in_words(*stage.target) +
-                         " cannot be reached: " + why + "; give another one, or the settings themselves");
+      const double pores = pore_volume(net);
+      const std::string key = std::string("stage.") + name() + "." + Law::target.name;
+      if (stage.target) {
+        const char* why = Law::settings_for(*stage.target, pores, pairs.data(), long(pairs.size()), settings);
+        if (why != nullptr)
+          throw InputError(key + " = " + in_words(*stage.target) + " cannot be reached: " + why +
+                           "; give another one, or the settings themselves");
+      } else if (const double made = Law::target_of(settings, pores, pairs.data(), long(pairs.size())); made > 1) {
+        throw InputError(key + " would be " + in_words(made) + " with these settings; allowed: at most 1; give " +
+                         Law::target.name + " instead, or others");
+      }
     }
     return settings;
   }

@@ -245,6 +245,8 @@ TEST_CASE("a stage of water reaches the saturation that is asked", "[bridge]") {
                     .volume;
     CHECK(volume / pore_volume(net) == Approx(0.03).epsilon(1e-6));
     CHECK((water_of(moist).front().suction > 0) == (dimension_of(shape) == 2));
-    CHECK_THROWS_WITH(run("saturation = 0.03\nsuction_Pa = 100\n"), Catch::Contains("saturation"));
+    CHECK_THROWS_WITH(run("saturation = 0.03\nsuction_Pa = 100\n"), Catch::Contains("contradicts suction_Pa"));
+    CHECK_THROWS_WITH(run("suction_Pa = 0.1\n"), Catch::Contains("stage.water.saturation would be"));
+    CHECK_THROWS_WITH(run(""), Catch::Contains("stage.water.suction_Pa is missing"));
   }
 }
