@@ -205,7 +205,8 @@ double sum_over_bonds(const MeasuredState& state, const Of& of) {
   return sum;
 }
 inline double bonds_with(const MeasuredState& state, double broken) {
-  return sum_over_bonds(state, [=](auto law, const double* c) { return c[decltype(law)::broken] == broken ? 1.0 : 0.0; });
+  return sum_over_bonds(state,
+                        [=](auto law, const double* c) { return c[decltype(law)::broken] == broken ? 1.0 : 0.0; });
 }
 
 struct Bonds {

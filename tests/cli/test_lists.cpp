@@ -27,9 +27,8 @@ TEST_CASE("keys lists every key with unit, type, default, range and meaning") {
 TEST_CASE("keys takes a part of a key, whatever its case, and says when there is none") {
   const Workplace here;
   const std::string text = here.run("keys PRESSURE").output;
-  CHECK_THAT(text,
-             Contains("test.pressure_Pa  (number in Pa: 0 to 1e+15; usual 1000 to 1e+09 Pa; no default)\n    ") &&
-                 Contains("stage.isotropic.pressure_Pa") && Contains("default (test.pressure_Pa)"));
+  CHECK_THAT(text, Contains("test.pressure_Pa  (number in Pa: 0 to 1e+15; usual 1000 to 1e+09 Pa; no default)\n    ") &&
+                       Contains("stage.isotropic.pressure_Pa") && Contains("default (test.pressure_Pa)"));
   CHECK(text.find("friction") == std::string::npos);
   CHECK(nlohmann::json::parse(here.run("keys stage.probe --json").output)["keys"].size() == 3);
   expect_mistake(here.run("keys contact.slop"), "the nearest known key is contact.slip");
