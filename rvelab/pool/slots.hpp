@@ -82,9 +82,10 @@ struct Resident {
   Rve rve;
   Tokens tokens;
   double initial_void_ratio = 0;
-  StepFigures last{};    ///< committed
-  StepFigures trial{};   ///< pending
-  bool pending = false;  ///< the last trial of `tokens` is; its state may have been let go of
+  StepFigures last{};        ///< committed
+  StepFigures trial{};       ///< pending
+  bool pending = false;      ///< the last trial of `tokens` is; its state may have been let go of
+  bool called_long = false;  ///< by many sub-steps: it rests once nothing that it keeps serves another trial
 };
 
 struct Slot {

@@ -88,13 +88,21 @@ std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uin
 }
 
 /// An RVE that was called stays allocated for the next call, so that steps of a few sub-steps do not pay for waking. It
-/// rests at once after a long call, or when it was not called while two rounds of calls went by.
+/// rests at once after a long call, or when it was not called while two rounds of calls went by; after a long trial
+/// that left its start to the others of its committed state, when it is committed.
 void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
-  const bool rests = substeps >= long_call;
-  if (rests) slot.resident->rve.release();
-  slot.allocated.store(!rests, std::memory_order_relaxed);
+  slot.resident->called_long = substeps >= long_call;
+  slot.allocated.store(true, std::memory_order_relaxed);
+  rest_after_long_call(slot);
   rest_another();
+}
+
+void ThreadedPool::rest_after_long_call(Slot& slot) noexcept {
+  Rve& rve = slot.resident->rve;
+  if (!slot.resident->called_long || rve.shares_start() || rve.released()) return;
+  rve.release();
+  slot.allocated.store(false, std::memory_order_relaxed);
 }
 
 /// Each call checks one other RVE: a round of calls checks all.

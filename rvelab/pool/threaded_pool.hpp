@@ -160,6 +160,7 @@ class ThreadedPool : public Pool {
   void take_state(const Hold& hold, std::span<const std::byte> snapshot);
   std::vector<Hold> all_pending(std::uint64_t call);
   void called(Slot& slot, long substeps) noexcept;
+  void rest_after_long_call(Slot& slot) noexcept;
   void rest_another() noexcept;
   template <class Change>
   std::int64_t go_on(std::int64_t id, const Change& change);

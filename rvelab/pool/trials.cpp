@@ -94,7 +94,6 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
                                             bool with_tangent) {
   Resident& resident = *slot.resident;
   Rve& rve = resident.rve;
-  rve.revert();
   resident.pending = false;
   slot.allocated.store(true, std::memory_order_relaxed);
   const Cost cost(slot);
@@ -135,6 +134,7 @@ Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradien
   const Hold hold = held(id, ++serial_);
   Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, false);
   commit_trial(hold.resident(), outcome.token);
+  rest_after_long_call(hold.slot());
   store(outcome.response.stress, stress);
   return std::move(outcome.verdict);
 }
@@ -270,6 +270,7 @@ void ThreadedPool::commit(std::span<const std::int64_t> ids) {
   team_.share(holds.size(), [&](std::size_t k) {
     Resident& resident = holds[k].resident();
     commit_trial(resident, last_token(resident.tokens));
+    rest_after_long_call(holds[k].slot());
   });
 }
 
@@ -290,8 +291,12 @@ void ThreadedPool::settle() noexcept {
     for (const std::int64_t id : prepared_) slots_.give_up(id);
   else
     team_.share(prepared_.size(), [this](std::size_t k) {
-      Resident& resident = *slots_[Id::of(prepared_[k]).slot].resident;
-      if (prepared_for_ == Settling::commit) return commit_trial(resident, last_token(resident.tokens));
+      Slot& slot = slots_[Id::of(prepared_[k]).slot];
+      Resident& resident = *slot.resident;
+      if (prepared_for_ == Settling::commit) {
+        commit_trial(resident, last_token(resident.tokens));
+        return rest_after_long_call(slot);
+      }
       resident.rve.revert();
       resident.pending = false;
     });

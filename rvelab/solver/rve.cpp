@@ -23,6 +23,19 @@ namespace {
 /// A state for a call that changes it: no trial is pending, all buffers are there.
 State& prepared_for_change(State& state) {
   if (state.pending()) state.revert();
+  state.drop_start();
+  state.allocate();
+  return state;
+}
+
+/// The same for another trial. Where trials share their start, its forces come with it, or are evaluated then.
+State& prepared_for_trial(State& state) {
+  if (state.pending()) {
+    if (state.has_start())
+      state.revert_but_forces();
+    else
+      state.revert();
+  }
   state.allocate();
   return state;
 }
@@ -105,16 +118,17 @@ struct Increment {
   FrameSplit split;
 };
 
-Report load(State& state, Increment increment) {
+Report load(State& state, Increment increment, Beginning beginning) {
   const bool quasi_static = loading_of(increment.dt) == Loading::quasi_static;
+  if (!quasi_static || increment.split.rigid || state.has_deferred()) state.need_forces();
   if (quasi_static && increment.split.rigid) return load_rotation(state, increment.split, increment.gradient);
   long deferred = 0;
   if (state.has_deferred() && !(quasi_static && is_along_deferred(state, increment.split))) {
     deferred = apply_deferred(state);
     increment.split = split_increment(state.cell(), increment.gradient);  // the lattice may have been reduced
   }
-  Report report =
-      quasi_static ? load_quasi_static(state, increment.split) : load_at_rate(state, increment.split, increment.dt);
+  Report report = quasi_static ? load_quasi_static(state, increment.split, beginning)
+                               : load_at_rate(state, increment.split, increment.dt);
   report.substeps += deferred;
   return report;
 }
@@ -139,22 +153,32 @@ Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
 Response Rve::attempt(const Matrix3& displacement_gradient, double dt) {
-  State& state = prepared_for_change(*state_);
-  expect_time(dt);
-  const CallClock clock(state.model().times);
-  const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
-  // A deferred increment moves no grain: its trial is the cell alone.
-  const bool deferred = loading_of(dt) == Loading::quasi_static && may_defer(state, increment.split);
-  return run_as_trial(state, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
-    const Report report = deferred ? defer(state, increment.split) : load(state, increment);
-    return respond(state, report, displacement_gradient, dt);
-  });
+  return begin(displacement_gradient, dt, Beginning::shared);
 }
 
 Response Rve::apply(const Matrix3& displacement_gradient, double dt) {
-  const Response response = attempt(displacement_gradient, dt);
+  const Response response = begin(displacement_gradient, dt, Beginning::own);
   commit();
   return response;
+}
+
+Response Rve::begin(const Matrix3& displacement_gradient, double dt, Beginning beginning) {
+  State& state = prepared_for_trial(*state_);
+  try {
+    expect_time(dt);
+    const CallClock clock(state.model().times);
+    const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
+    // A deferred increment moves no grain: its trial is the cell alone.
+    const bool deferred = loading_of(dt) == Loading::quasi_static && may_defer(state, increment.split);
+    if (deferred) state.need_forces();
+    return run_as_trial(state, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
+      const Report report = deferred ? defer(state, increment.split) : load(state, increment, beginning);
+      return respond(state, report, displacement_gradient, dt);
+    });
+  } catch (...) {
+    state.need_forces();
+    throw;
+  }
 }
 
 Response Rve::apply(const MixedTarget& target, double dt) {
@@ -178,6 +202,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   return run_and_commit(state, [&] { return rvelab::relax(state, unbalanced, max_steps); });
 }
 
+bool Rve::shares_start() const { return state_->has_start(); }
 bool Rve::pending() const { return state_->pending(); }
 void Rve::commit() {
   if (pending()) state_->commit();

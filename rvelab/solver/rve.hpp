@@ -15,6 +15,7 @@
 
 namespace rvelab {
 
+enum class Beginning;
 class State;
 struct StepTimes;
 
@@ -54,6 +55,9 @@ class Rve {
   /// With a trial pending, const calls (stress, network, specimen, cell, save) answer for its end. After exchange()
   /// they answer for the committed state, after a second one for the trial again; nothing else may be called between.
   void exchange() noexcept;
+  /// Whether the Rve keeps what a trial did before its first sub-step (masses, a stress that settled), with which other
+  /// trials of the same committed state begin, to the same bits. It is gone with that state, and by release().
+  bool shares_start() const;
 
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
@@ -144,6 +148,7 @@ class Rve {
   void restore(std::span<const std::byte> snapshot);
 
  private:
+  Response begin(const Matrix3& displacement_gradient, double dt, Beginning beginning);
   /// What watch, share and measure_time set stays.
   void open_instead(const Specimen& specimen);
 

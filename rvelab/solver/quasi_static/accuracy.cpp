@@ -40,6 +40,10 @@ double error_growth(double strain, double strain_of_overlap) {
   return std::sqrt(std::sqrt(std::sqrt(std::max(1.0, strain / strain_of_overlap))));
 }
 
+double ratio_for(double allowed, double error_per_ratio) {
+  return std::clamp(allowed / (step_margin * error_per_ratio), least_target, largest_target);
+}
+
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
   // n^-11/8 by roots, which give the same bits everywhere.
   const double root = std::sqrt(std::sqrt(steps));

@@ -60,6 +60,9 @@ double error_growth(double strain, double strain_of_overlap);
 /// 0 for the same going on.
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps);
 
+/// Unbalanced ratio that an increment may have whose error may be `allowed` (Pa), K p being `error_per_ratio` (Pa).
+double ratio_for(double allowed, double error_per_ratio);
+
 /// The ratio that a path under stress control may have, whose stress may err by `share` of the pressure, the larger of
 /// the two tolerances: where it flows its stress changes by nothing, and a part of that would be no measure. K is at
 /// most 4 in the plane and 10 in space.

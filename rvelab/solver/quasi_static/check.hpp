@@ -10,9 +10,12 @@ class EquilibriumCheck {
  public:
   /// Begins quasi-static loading: velocities of another kind end, masses are scaled where none are.
   explicit EquilibriumCheck(State& state);
+  /// Of a state that a trial before began so.
+  EquilibriumCheck(State& state, bool not_yet_checked) : state_(state), not_yet_checked_(not_yet_checked) {}
 
   /// Measures the unbalanced ratio. Throws as State::checked_balance.
   const OutOfBalance& check();
+  bool not_yet_checked() const { return not_yet_checked_; }
   /// Whether so many sub-steps are made since masses were scaled that a check is due.
   bool is_due() const;
   /// Whether the end of an increment of so many sub-steps and this strain is checked. If not, it is judged by what is

@@ -67,8 +67,7 @@ double allowed_on_path(State& state, double elastic_change) {
 double target_ratio(State& state, double elastic_change) {
   if (state.model().options.target_unbalanced > 0) return state.model().options.target_unbalanced;
   if (!(pressure(state) > 0)) return largest_target;
-  return std::clamp(allowed_on_path(state, elastic_change) / (step_margin * expected_error(state, 1)), least_target,
-                    largest_target);
+  return ratio_for(allowed_on_path(state, elastic_change), expected_error(state, 1));
 }
 
 double target_ratio_of_start(State& state, double elastic_change, double factor) {

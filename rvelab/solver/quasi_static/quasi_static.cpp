@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/strain_path.hpp"
@@ -146,6 +147,36 @@ TurnOfPath turn_of(double strain, const Matrix3& change, const Matrix3& rate) {
   return {along < same_direction * strain * rate.norm(), along <= 0, along < 0};
 }
 
+/// What an increment finds done before its first sub-step.
+struct Begun {
+  EquilibriumCheck check;
+  TurnOfPath turn;
+  Relaxed relaxed;
+};
+Begun begin_increment(State& state, const Matrix3& change, double strain, Beginning beginning) {
+  const bool shared = beginning == Beginning::shared && by_tolerance(state);
+  if (shared && state.has_start()) {
+    RelaxedStart& made = state.relaxed_start();
+    const TurnOfPath turn = turn_of(strain, change, made.rate);
+    if (relaxes_alike(state.model().options, made, strain, turn.turns)) {
+      state.take_start();
+      return {EquilibriumCheck(state, made.not_yet_checked), turn, relaxed_by(state, made)};
+    }
+  }
+  state.need_forces();
+  Begun begun{EquilibriumCheck(state), {}, {}};
+  begun.turn = turn_of(strain, change, state.last_step().rate);
+  if (!by_tolerance(state)) return begun;
+  RelaxedStart relaxed_start = relaxed_start_of(state);
+  begun.relaxed = relax_before(state, begun.check, strain, begun.turn.turns, relaxed_start);
+  relaxed_start.not_yet_checked = begun.check.not_yet_checked();
+  // The longest that was made stays: it is worth most.
+  const bool worth = relaxed_start.parts() > 0 || relaxed_start.not_yet_checked;
+  if (shared && worth && !(state.has_start() && state.relaxed_start().parts() >= relaxed_start.parts()))
+    state.keep_start(std::move(relaxed_start));
+  return begun;
+}
+
 /// Notes a turn of the path, before the increment that makes it.
 void note_direction(State& state, double strain, const TurnOfPath& turn) {
   QuasiStaticControl& control = state.control();
@@ -162,24 +193,23 @@ void expect_substeps(const State& state, long needed) {
                         std::to_string(state.model().options.max_substeps));
 }
 
-Report load_quasi_static(State& state, FrameSplit whole) {
+Report load_quasi_static(State& state, FrameSplit whole, Beginning beginning) {
   Report report;
   QuasiStaticControl& control = state.control();
   take_in_deferred(state, whole);
-  EquilibriumCheck check(state);
   const Matrix3 start_frame = state.cell().rotation, change = whole.stretch - Matrix3::Identity();
   const StrainPath path(whole, false);
   const double strain = path.strain();
-  const TurnOfPath turn = turn_of(strain, change, state.last_step().rate);
-  const Relaxed relaxed = by_tolerance(state) ? relax_before(state, check, strain, turn.turns) : Relaxed();
-  report.substeps += relaxed.steps;
+  Begun begun = begin_increment(state, change, strain, beginning);
+  const TurnOfPath turn = begun.turn;
+  report.substeps += begun.relaxed.steps;
   const Matrix3 stress_before = state.stress();
   note_direction(state, strain, turn);
 
   const double elastic_change = elastic_stress_change(state, std::max(strain, control.strain_since_reversal));
   set_target_ratio(state, target_ratio(state, elastic_change));
   const Start start = start_of(state, change, strain, elastic_change, turn.reverses);
-  CheckedSteps substeps(state, check, path, start);
+  CheckedSteps substeps(state, begun.check, path, start);
   substeps.make(report.substeps);
   if (!state.stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
@@ -190,7 +220,7 @@ Report load_quasi_static(State& state, FrameSplit whole) {
   judge_equilibrium(state, report, start.start_error_factor > 0 ? start.unbalanced_ratio : 0);
   const JudgedIncrement judged{.strain = strain,
                                .unbalanced_ratio = control.unbalanced_ratio,
-                               .creep_error = relaxed.creep,
+                               .creep_error = begun.relaxed.creep,
                                .start_error_factor = start.start_error_factor,
                                .events = substeps.events().happened(state),
                                .broken_stress = substeps.events().broken_stress(state)};
@@ -230,7 +260,7 @@ long apply_deferred(State& state) {
   if (!state.has_deferred()) return 0;
   const FrameSplit deferred{Matrix3::Identity(), state.control().deferred.stretch, false};
   state.set_deferred(Matrix3::Identity());
-  return load_quasi_static(state, deferred).substeps;
+  return load_quasi_static(state, deferred, Beginning::own).substeps;
 }
 
 }  // namespace rvelab

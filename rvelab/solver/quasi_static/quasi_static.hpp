@@ -8,8 +8,10 @@
 
 namespace rvelab {
 
+/// Whether a trial begins where others of its committed state did (state/start.hpp), and leaves them where it did.
+enum class Beginning { own, shared };
 /// Applies the increment together with any deferred strain. Throws IncrementFailed.
-Report load_quasi_static(State& state, FrameSplit increment);
+Report load_quasi_static(State& state, FrameSplit increment, Beginning beginning);
 /// A rotation: grains and stress turn with the frame of the cell.
 Report load_rotation(State& state, const FrameSplit& increment, const Matrix3& displacement_gradient);
 /// Applies the deferred strain; the number of sub-steps.

@@ -1,8 +1,9 @@
 #include "rvelab/solver/quasi_static/relaxation.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <optional>
 
+#include "rvelab/solver/quasi_static/accuracy.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"
 #include "rvelab/solver/quasi_static/error_model.hpp"
 #include "rvelab/solver/quasi_static/quasi_static.hpp"
@@ -13,6 +14,8 @@ namespace rvelab {
 using namespace constants;
 
 namespace {
+
+constexpr long part = check_interval / 2;  ///< sub-steps of a relaxation between two looks
 
 void advance_fixed_cell(State& state, long steps) {
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
@@ -43,7 +46,7 @@ Report relax(State& state, double unbalanced, long max_steps) {
     // The state counts the steps: a relaxation may be made in as many calls as one likes.
     const bool patient = state.control().steps_at_fixed_shape < patience_of_damping;
     const double before = patient ? 0 : kinetic_energy(state.model(), state.assembly());
-    const long steps = std::min(check_interval / 2, max_steps - report.substeps);
+    const long steps = std::min(part, max_steps - report.substeps);
     advance_fixed_cell(state, steps);
     report.substeps += steps;
     if (!patient && kinetic_energy(state.model(), state.assembly()) < before) state.stop_quasi_static();
@@ -53,26 +56,72 @@ Report relax(State& state, double unbalanced, long max_steps) {
   return report;
 }
 
-Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns) {
-  const double so_far = state.control().strain_since_reversal;
+namespace {
+
+/// Error that an increment allows the state before it, Pa; none: it goes on from the state as it is.
+std::optional<double> allowed_before(const SolverOptions& o, const RelaxedStart& s, double strain, bool turns) {
+  const double so_far = s.strain_since_reversal;
   const double path = turns ? so_far : std::max(strain, std::min(so_far + strain, judged_together));
-  const double elastic_change = elastic_stress_change(state, path);
-  Relaxed relaxed;
-  if (!turns && !was_coarser(state, elastic_change)) return relaxed;
-  const double allowed = allowed_by_tolerances(state, state.control().stiffness_ratio * elastic_change, elastic_change);
-  std::vector<Matrix3> stresses;
-  while (relaxed.steps < most_steps_before_turn && expected_error(state, state.control().unbalanced_ratio) >
-                                                       (relaxed.steps > 0 ? 1 / step_margin : 1) * allowed) {
-    stresses.push_back(state.stress());
-    advance_fixed_cell(state, check_interval / 2);
+  const double elastic_change = s.network_stiffness * path;
+  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, s.stiffness_ratio * elastic_change,
+                                       elastic_change, s.pressure_scale);
+  const double target = s.pressure > 0 ? ratio_for(allowed, s.error_per_ratio) : largest_target;
+  if (!turns && !(s.target_unbalanced_ratio > step_margin * target)) return std::nullopt;
+  return allowed;
+}
+
+/// Whether it goes on after so many parts.
+bool goes_on(const RelaxedStart& s, std::size_t parts, double allowed) {
+  return long(parts) * part < most_steps_before_turn && s.error[parts] > (parts > 0 ? 1 / step_margin : 1) * allowed;
+}
+
+}  // namespace
+
+RelaxedStart relaxed_start_of(State& state) {
+  const QuasiStaticControl& control = state.control();
+  RelaxedStart s;
+  s.rate = state.last_step().rate;
+  s.strain_since_reversal = control.strain_since_reversal;
+  s.network_stiffness = control.interval.network_stiffness;
+  s.stiffness_ratio = control.stiffness_ratio;
+  s.target_unbalanced_ratio = control.target_unbalanced_ratio;
+  s.pressure = pressure(state);
+  s.pressure_scale = pressure_scale(state);
+  s.error_per_ratio = expected_error(state, 1);
+  return s;
+}
+
+Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns, RelaxedStart& relaxed_start) {
+  const std::optional<double> allowed = allowed_before(state.model().options, relaxed_start, strain, turns);
+  if (!allowed) return {};
+  relaxed_start.error.push_back(expected_error(state, state.control().unbalanced_ratio));
+  while (goes_on(relaxed_start, relaxed_start.parts(), *allowed)) {
+    relaxed_start.stress.push_back(state.stress());
+    advance_fixed_cell(state, part);
     check.check();
-    relaxed.steps += check_interval / 2;
+    relaxed_start.error.push_back(expected_error(state, state.control().unbalanced_ratio));
   }
-  if (relaxed.steps == 0) return relaxed;
-  relaxed.creep = std::max((state.stress() - stresses[stresses.size() / 2]).norm(),
-                           slow_share * (state.stress() - stresses[0]).norm());
+  return relaxed_by(state, relaxed_start);
+}
+
+bool relaxes_alike(const SolverOptions& options, const RelaxedStart& made, double strain, bool turns) {
+  const std::optional<double> allowed = allowed_before(options, made, strain, turns);
+  if (!allowed) return made.parts() == 0;
+  std::size_t parts = 0;
+  while (parts < made.parts() && goes_on(made, parts, *allowed)) ++parts;
+  return parts == made.parts() && !goes_on(made, parts, *allowed);
+}
+
+Relaxed relaxed_by(State& state, RelaxedStart& made) {
+  Relaxed relaxed;
+  if (made.parts() == 0) return relaxed;
+  relaxed.steps = long(made.parts()) * part;
+  relaxed.creep = std::max((state.stress() - made.stress[made.parts() / 2]).norm(),
+                           slow_share * (state.stress() - made.stress[0]).norm());
+  if (!state.model().contact.rolling) return relaxed;
   // Grains that roll past each other creep on at nearly the same rate long after the others are at rest.
-  if (state.model().contact.rolling) relaxed.creep = std::max(relaxed.creep, creep_goes_on * change_at_rest(state));
+  if (made.creep_of_rolling < 0) made.creep_of_rolling = creep_goes_on * change_at_rest(state);
+  relaxed.creep = std::max(relaxed.creep, made.creep_of_rolling);
   return relaxed;
 }
 

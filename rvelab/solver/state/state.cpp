@@ -77,19 +77,21 @@ void State::set_missing_references() {
 }
 
 const Matrix3& State::stress() {
-  return stress_.of(generation_, [this] { return Matrix3(-contact_virial(model_, assembly_) / cell().volume()); });
+  return derived_.stress.of(derived_.generation,
+                            [this] { return Matrix3(-contact_virial(model_, assembly_) / cell().volume()); });
 }
 
 const OutOfBalance& State::out_of_balance() {
-  return balance_.of(generation_, [this] { return balance_of(model_, assembly_); });
+  return derived_.balance.of(derived_.generation, [this] { return balance_of(model_, assembly_); });
 }
 
 const InteractionSums& State::interaction_sums() {
-  return interaction_sums_.of(generation_, [this] { return rvelab::interaction_sums(model_, assembly_); });
+  return derived_.interaction_sums.of(derived_.generation,
+                                      [this] { return rvelab::interaction_sums(model_, assembly_); });
 }
 
 const RowSums& State::row_sums() {
-  return sums_.of(generation_, [this] { return rvelab::row_sums(model_, assembly_); });
+  return sums_.of(derived_.generation, [this] { return rvelab::row_sums(model_, assembly_); });
 }
 
 const OutOfBalance& State::checked_balance() {
@@ -100,7 +102,7 @@ const OutOfBalance& State::checked_balance() {
 
 void State::note_unbalanced_ratio() {
   control().unbalanced_ratio = unbalanced_ratio(out_of_balance());
-  ratio_generation_ = generation_;
+  derived_.ratio_generation = derived_.generation;
 }
 
 double State::unbalanced_ratio(const OutOfBalance& balance) const {
@@ -195,30 +197,63 @@ void State::take_as_reference() {
 
 void State::begin_trial(Trial::Changes changes) {
   trial_.begin(assembly_, changes);
-  other_generation_ = generation_;
-  other_stress_ = stress_;
+  of_other_ = derived_;
+}
+
+void State::exchange_but_forces() noexcept {
+  trial_.exchange(assembly_);
+  std::swap(derived_, of_other_);
+  set_strained_cell();
+  forces_due_ = trial_.changes() == Trial::Changes::grains && !released_;
+}
+
+void State::need_forces() noexcept {
+  if (forces_due_) evaluate_forces_anew(model_, assembly_);
+  forces_due_ = false;
 }
 
 void State::exchange() noexcept {
-  trial_.exchange(model_, assembly_, released_);
-  std::swap(generation_, other_generation_);
-  std::swap(stress_, other_stress_);
-  set_strained_cell();
+  exchange_but_forces();
+  need_forces();
 }
 
 void State::revert() noexcept {
   exchange();
-  commit();
+  end_trial();
+}
+
+void State::revert_but_forces() noexcept {
+  exchange_but_forces();
+  end_trial();
 }
 
 void State::commit() noexcept {
+  end_trial();
+  drop_start();
+}
+
+void State::end_trial() noexcept {
   trial_.end(assembly_);
   if (released_ || model_.size() > largest_kept_trial) trial_.release();
+}
+
+void State::keep_start(RelaxedStart relaxed_start) noexcept {
+  if (model_.size() > largest_kept_trial) return;
+  start_.keep(assembly_, trial_.other_cell().lattice, std::move(relaxed_start));
+  of_start_ = derived_;
+}
+
+void State::take_start() {
+  start_.take_over(assembly_);
+  derived_ = of_start_;
+  forces_due_ = false;
+  set_strained_cell();
 }
 
 void State::release() {
   put_masses_into_rows(model_, assembly_);
   sums_ = {};
+  start_ = {};
   released_ = true;
   if (pending()) {
     exchange();
@@ -241,7 +276,7 @@ Memory State::memory() const {
   const RowSums& sums = sums_.last();
   for (const auto* each : {&sums.translation, &sums.rotation, &sums.dashpot})
     memory.working += each->capacity() * sizeof(double);
-  (pending() ? memory.trial : memory.working) += trial_.bytes();
+  (pending() ? memory.trial : memory.working) += trial_.bytes() + start_.bytes();
   return memory;
 }
 

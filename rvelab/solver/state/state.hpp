@@ -9,6 +9,7 @@
 #include "rvelab/solver/loading/report.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
 #include "rvelab/solver/loading/velocities.hpp"
+#include "rvelab/solver/state/start.hpp"
 #include "rvelab/solver/state/trial.hpp"
 
 namespace rvelab {
@@ -53,7 +54,7 @@ class State {
   const Cell& cell() const { return assembly_.cell; }
   /// To change grains, contacts, cell or references: raises the generation.
   Assembly& change() {
-    generation_ = ++last_generation_;
+    derived_.generation = ++last_generation_;
     return assembly_;
   }
   // Parts of the state from which nothing is derived.
@@ -74,7 +75,7 @@ class State {
   const OutOfBalance& checked_balance();
   /// Notes the present ratio as measured on the present generation, which ratio_is_measured tells of.
   void note_unbalanced_ratio();
-  bool ratio_is_measured() const { return ratio_generation_ == generation_; }
+  bool ratio_is_measured() const { return derived_.ratio_generation == derived_.generation; }
   /// With this specimen's reference force.
   double unbalanced_ratio(const OutOfBalance& balance) const;
 
@@ -126,7 +127,17 @@ class State {
   bool pending() const { return trial_.pending(); }
   void exchange() noexcept;
   void revert() noexcept;
+  /// The same before another trial: forces are those of the committed state once need_forces or take_start was called.
+  void revert_but_forces() noexcept;
+  void need_forces() noexcept;
   void commit() noexcept;  ///< what is here is the state, and no trial is pending
+
+  // What trials of this committed state begin with (start.hpp); until the state is another.
+  bool has_start() const { return start_.kept(); }
+  RelaxedStart& relaxed_start() { return start_.relaxed_start(); }
+  void keep_start(RelaxedStart relaxed_start) noexcept;
+  void take_start();
+  void drop_start() noexcept { start_.drop(); }
 
   /// Releases what can be made again, of both states of a pending trial; allocate makes it again.
   void release();
@@ -135,24 +146,30 @@ class State {
   Memory memory() const;
 
  private:
+  /// What is derived of a state, and the generation of it.
+  struct DerivedValues {
+    std::uint64_t generation = 1;
+    std::uint64_t ratio_generation = 0;  ///< in which control().unbalanced_ratio was measured
+    Derived<Matrix3> stress;
+    Derived<OutOfBalance> balance;
+    Derived<InteractionSums> interaction_sums;
+  };
+
   void set_missing_references();
   void set_strained_cell();
+  void exchange_but_forces() noexcept;
+  void end_trial() noexcept;
 
   Model model_;
   Assembly assembly_;
   Trial trial_;
-  bool released_ = false;
+  SharedStart start_;
+  bool released_ = false, forces_due_ = false;
   Cell strained_cell_;
   std::uint64_t grain_steps_made_ = 0;
-  std::uint64_t generation_ = 1, last_generation_ = 1;
-  std::uint64_t ratio_generation_ = 0;  ///< in which control().unbalanced_ratio was measured
-  Derived<Matrix3> stress_;
-  Derived<OutOfBalance> balance_;
+  std::uint64_t last_generation_ = 1;
+  DerivedValues derived_, of_other_, of_start_;  ///< of_other_: of the state of a pending trial not in `assembly_`
   Derived<RowSums> sums_;
-  Derived<InteractionSums> interaction_sums_;
-  // While a trial is pending: those of the state that is not in `assembly_`.
-  std::uint64_t other_generation_ = 0;
-  Derived<Matrix3> other_stress_;
 };
 
 }  // namespace rvelab

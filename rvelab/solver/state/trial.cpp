@@ -46,7 +46,7 @@ void Trial::end(Assembly& assembly) noexcept {
   }
 }
 
-void Trial::exchange(const Model& model, Assembly& assembly, bool released) noexcept {
+void Trial::exchange(Assembly& assembly) noexcept {
   std::swap(assembly.cell, cell_);
   if (changes_ == Changes::deferred_strain) {
     std::swap(assembly.state.control.deferred.stretch, deferred_stretch_);
@@ -73,9 +73,10 @@ void Trial::exchange(const Model& model, Assembly& assembly, bool released) noex
     assembly.pairs.root_overlap.swap(root_overlap_);
     for (std::size_t t = 0; t < interactions_.size(); ++t) assembly.pairs.interactions[t].column.swap(interactions_[t]);
   }
-  if (released) return;
-  std::fill(assembly.pairs.touched.begin(), assembly.pairs.touched.end(),
-            1);  // by the other state: nothing is passed over
+}
+
+void evaluate_forces_anew(const Model& model, Assembly& assembly) noexcept {
+  std::fill(assembly.pairs.touched.begin(), assembly.pairs.touched.end(), 1);
   evaluate_forces(model, assembly);
 }
 

@@ -28,8 +28,11 @@ class Trial {
   void begin(Assembly& assembly, Changes changes);
   Changes changes() const { return changes_; }
   /// The committed state and that of the trial change places, bit for bit; once more, and they are where they were.
-  /// Allocates nothing. Forces are those of the state then, unless its buffers are `released`.
-  void exchange(const Model& model, Assembly& assembly, bool released) noexcept;
+  /// Allocates nothing. Forces are those of before: if grains changed they are to be evaluated anew
+  /// (evaluate_forces_anew).
+  void exchange(Assembly& assembly) noexcept;
+  /// That of the state which is not in the assembly.
+  const Cell& other_cell() const { return cell_; }
   /// No trial is pending. What `assembly` is now is its state: the committed one after an exchange.
   void end(Assembly& assembly) noexcept;
   bool pending() const { return pending_; }
@@ -49,5 +52,8 @@ class Trial {
   bool pending_ = false;
   bool list_is_whole_ = false;  ///< the replaced list holds the committed histories, not those when it was replaced
 };
+
+/// Forces of a state that took the place of another: no pair is passed over because it did not touch there.
+void evaluate_forces_anew(const Model& model, Assembly& assembly) noexcept;
 
 }  // namespace rvelab
