@@ -193,6 +193,15 @@ inline Water drawn_water(std::uint64_t seed) {
   return water;
 }
 
+/// As the stage `water` does; none: as its removal does.
+inline void set_water(Rve& rve, const std::vector<Water>& water) {
+  Interactions all = rve.interactions();
+  auto& bridges = static_cast<ListOf<CapillaryBridge>&>(all);
+  bridges.settings = water;
+  if (water.empty()) bridges.items.clear();
+  rve.set_interactions(all);
+}
+
 inline Drawn drawn(std::uint64_t seed) {
   return seed < first_of_kinds            ? drawn_recipe(seed)
          : seed < first_with_interactions ? drawn_kind(seed)
@@ -267,12 +276,12 @@ inline std::vector<Specimen> interacting_states(std::uint64_t seed) {
     }
     return {path[intact / 2], path[peak > 0 ? peak - 1 : 0], path.back()};
   }
-  rve.set_water(drawn_water(seed));
+  set_water(rve, {drawn_water(seed)});
   if (!rve.relax(1e-7, 300'000).target_held) throw IncrementFailed("the moist packing does not come to rest");
   states.push_back(rve.specimen());
   for (int k = 0; k < 100; ++k) compress(rve, start, 2e-4, k == 0);
   states.push_back(rve.specimen());
-  rve.remove_water();
+  set_water(rve, {});
   states.push_back(rve.specimen());
   return states;
 }

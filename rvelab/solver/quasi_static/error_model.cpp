@@ -113,7 +113,7 @@ bool can_measure_lag(State& state) {
 
 bool lag_is_due(State& state, const JudgedIncrement& increment, long substeps) {
   const LagMeasurement& lag = state.control().lag;
-  const bool first = lag.error_factor == 0 && (substeps >= least_measured || lag.steps >= check_interval);
+  const bool first = lag.error_factor == 0 && (substeps >= check_interval / 2 || lag.steps >= check_interval);
   const bool changed = lag.steps >= changed_period && lag.strain > overlap_strain(state);
   const bool due = first || changed || increment.events || lag.steps >= measured_period;
   return due && can_measure_lag(state);
