@@ -16,9 +16,8 @@ import chains
 import state as states
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
 
 TENSION, SHEAR, INTACT = "crimson", "tab:blue", "0.25"
 
@@ -41,17 +40,10 @@ def lines_of(state):
 
 def draw_bonds(axes, state):
     """Grains, bonds, cracks and cell of a state."""
-    scale, unit = chains.unit_of(state)
-    axes.grid(False)
-    rows = np.flatnonzero(chains.in_slab(state, state.position))
-    axes.add_collection(PatchCollection(chains.patches_of(state, scale, rows), facecolor="0.94", edgecolor="0.78", linewidth=0.4))
+    scale = chains.draw_cell(axes, state)
     for lines, colour, width in zip(lines_of(state), (INTACT, TENSION, SHEAR), (1.2, 1.8, 1.8)):
         axes.add_collection(LineCollection(scale * lines, linewidths=width, colors=colour, capstyle="round"))
-    axes.add_patch(Polygon(scale * chains.outline_of(state), fill=False, linestyle="--", edgecolor="k", linewidth=1.2))
-    axes.set_aspect("equal")
     axes.autoscale_view()
-    axes.set_xlabel(f"x ({unit})")
-    axes.set_ylabel(f"{'xyz'[state.dimension - 1]} ({unit})")
 
 
 def counts(state):

@@ -51,13 +51,22 @@ def outline_of(state):
     return np.array([-(a + b) / 2, (a - b) / 2, (a + b) / 2, (b - a) / 2])
 
 
-def draw_network(axes, state):
-    """Grains, forces and cell of a state; the mean normal force, N, and how many contacts carry more."""
+def draw_cell(axes, state):
+    """Grains and cell of a state, under the lines that come after; the factor of lengths."""
     scale, unit = unit_of(state)
-    plane = [0, state.dimension - 1]
     axes.grid(False)
     rows = np.flatnonzero(in_slab(state, state.position))
     axes.add_collection(PatchCollection(patches_of(state, scale, rows), facecolor="0.94", edgecolor="0.78", linewidth=0.4))
+    axes.add_patch(Polygon(scale * outline_of(state), fill=False, linestyle="--", edgecolor="k", linewidth=1.2))
+    axes.set_aspect("equal")
+    axes.set_xlabel(f"x ({unit})")
+    axes.set_ylabel(f"{'xyz'[state.dimension - 1]} ({unit})")
+    return scale
+
+
+def draw_network(axes, state):
+    """Grains, forces and cell of a state; the mean normal force, N, and how many contacts carry more."""
+    scale, plane = draw_cell(axes, state), [0, state.dimension - 1]
     mean = state.normal_force.mean() if len(state.normal_force) else 1.0
     seen = in_slab(state, state.begin + 0.5 * state.branch)
     lines = scale * np.stack([state.begin, state.begin + state.branch], axis=1)[:, :, plane]
@@ -65,11 +74,7 @@ def draw_network(axes, state):
     for chosen, colour in ((~strong & seen, WEAK), (strong & seen, STRONG)):
         axes.add_collection(LineCollection(lines[chosen], linewidths=1.6 * state.normal_force[chosen] / mean,
                                            colors=colour, capstyle="round"))
-    axes.add_patch(Polygon(scale * outline_of(state), fill=False, linestyle="--", edgecolor="k", linewidth=1.2))
-    axes.set_aspect("equal")
     axes.autoscale_view()
-    axes.set_xlabel(f"x ({unit})")
-    axes.set_ylabel(f"{'xyz'[state.dimension - 1]} ({unit})")
     return mean, int(strong.sum())
 
 

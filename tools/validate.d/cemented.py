@@ -16,7 +16,6 @@ Published statements that stand beside them, with limits as set before the runs:
   Wang and Leung 2008, as those report: with more cement hardening becomes softening, contraction dilation;
   de Bono, McDowell, Wanatowski 2014 (Granul. Matter 16, 563-572), of laboratory studies: cement lowers the strain of the peak.
 """
-import argparse
 import pathlib
 import subprocess
 
@@ -26,6 +25,7 @@ import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import part
 from verdict import tell_verdicts
 from verdict import verdict as row_of_verdict
 
@@ -239,17 +239,10 @@ def draw(path, families):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
-    parser.add_argument("work", type=pathlib.Path)
-    parser.add_argument("figure", nargs="?")
-    parser.add_argument("--count", type=int, default=5)
-    options = parser.parse_args()
-    program = str(pathlib.Path(options.program).resolve())
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = part.options(__doc__)
     families = []
     for name, test in (("discs", BIAXIAL), ("spheres", TRIAXIAL)):
-        rows, envelopes, similar, stiff = family(program, options.work, test, options.count)
+        rows, envelopes, similar, stiff = family(options.program, options.work, test, options.count)
         judge(name, test, rows, envelopes, similar, stiff, options.count)
         families.append((name, test, rows, envelopes))
     if options.figure:

@@ -1,6 +1,4 @@
 """Bridges of water between two spheres, rvelab beside YADE's ViscElCap laws: for tools/validate interactions_peers."""
-import json
-import os
 import pathlib
 
 import numpy as np
@@ -70,13 +68,10 @@ def bridges(program, folder):
         gaps = np.r_[1e-5 * small, np.linspace(0.02, 1.6, 80) * rupture]
         job = {"radii": radii, "volume": volume * small**3, "angle_deg": angle, "surface_tension": SURFACE_TENSION,
                "laws": LAWS, "gaps": gaps.tolist()}
-        (folder / "bridges.job.json").write_text(json.dumps(job))
-        packings.run(["yade", "-n", "-x", "-j1", YADE, folder / "bridges.job.json", folder / "bridges.out.json"],
-                     env=dict(os.environ, OMP_NUM_THREADS="1"))
         own = pulls(program, folder, radii, volume, angle, gaps)
         end = gaps[own > 1e-9 * own[0]][-1]
         before = gaps < 0.8 * end
-        for law, force in json.loads((folder / "bridges.out.json").read_text()).items():
+        for law, force in packings.in_yade(YADE, folder, job).items():
             force = np.array(force)
             error, last = np.abs(force[before] / own[before] - 1), gaps[force > 0][-1]
             name = f"radii 1:{max(radii) / small:g}, V = {volume:g} r^3, {angle} degrees: {law}"

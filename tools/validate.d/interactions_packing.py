@@ -81,6 +81,14 @@ def run(words, **options):
     return done.stdout
 
 
+def in_yade(script, folder, job):
+    """What a script that runs inside YADE, on one core, answers to a job."""
+    question, answer = folder / f"{script.stem}.job.json", folder / f"{script.stem}.out.json"
+    question.write_text(json.dumps(job))
+    run(["yade", "-n", "-x", "-j1", script, question, answer], env=dict(os.environ, OMP_NUM_THREADS="1"))
+    return json.loads(answer.read_text())
+
+
 class Cemented:
     """A packing of spheres that stand a hundredth of their radii off each other (`shrunk`), bonded without force: the
     bonds alone act. In a cubic cell, so that it is the same in all programs."""
@@ -93,7 +101,7 @@ class Cemented:
         pathlib.Path(f"{stem}.toml").write_text(RECIPE.format(seed=seed, grains=grains, largest=largest))
         run([program, "pack", f"{stem}.toml", "-o", f"{stem}.h5", "--force"])
         run([program, "export", f"{stem}.h5", "--format", "csv", "-o", stem, "--force"])
-        lattice = np.array(json.loads(run([program, "inspect", f"{stem}.h5", "--json"]))["lattice_m"]).T
+        lattice = np.array(json.loads(run([program, "inspect", f"{stem}.h5", "--json"]))["lattice_m"])
         edge = float(np.cbrt(np.linalg.det(lattice)))
         with open(f"{stem}.particles.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
@@ -131,10 +139,7 @@ class Cemented:
                 "tension": self.strengths[0].tolist(), "shear": self.strengths[1].tolist(), **what}
 
     def yade(self, **what):
-        job, out = self.folder / "yade.job.json", self.folder / "yade.out.json"
-        job.write_text(json.dumps(self.job(**what)))
-        run(["yade", "-n", "-x", "-j1", YADE, job, out], env=dict(os.environ, OMP_NUM_THREADS="1"))
-        return json.loads(out.read_text())
+        return in_yade(YADE, self.folder, self.job(**what))
 
 
 def branches(rve):

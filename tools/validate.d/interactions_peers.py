@@ -12,7 +12,10 @@
    cohesion) is LAMMPS' criterion, by forces alone (moment_factor 0) YADE's. Three packings; asked: first break and peak
    on each as near as packings scatter.
 3. Bridges of water of two spheres beside YADE's laws of given volume (interactions_bridges.py). Asked: Willett's fit, which is
-   the best of them, as near as it is to the Young-Laplace equation (results/capillary.txt).
+   the best of them, as near as it is to the Young-Laplace equation (results/capillary.txt). Their packings are not compared:
+   YADE's ViscElCap pulls where a gap is and not where grains touch, and its Law2_ScGeom_CapillaryPhys, of given suction, reads
+   tables that Debian's package has not.
+4. JKR and DMT of a packing beside LAMMPS' pair_style granular (interactions_adhesion.py). Asked: 1e-8 of the mean force.
 
     tools/validate.d/interactions_peers.py RVELAB FOLDER [LMP]
 
@@ -28,6 +31,7 @@ import warnings
 import numpy as np
 
 import interactions_packing as packings
+from interactions_adhesion import adhesion
 from interactions_bridges import bridges
 from verdict import tell_verdicts, verdict
 
@@ -173,6 +177,7 @@ def main():
     force_network(program, folder, lmp)
     breaking(program, folder, lmp)
     bridges(program, folder)
+    adhesion(program, folder, lmp)
     tell_verdicts()
 
 

@@ -20,7 +20,6 @@ settled after a first run, which took the mean from 1 to 3 % of strain and the b
   Jennings and Knight 1975 by Clemence and Finbarr 1981: collapse of 0 to above 20 % of the volume, in five classes;
   Lawton, Fragaszy, Hardcastle 1989 (Geotech. Test. J. 12, 252-267): dense states collapse less or not.
 """
-import argparse
 import pathlib
 import subprocess
 
@@ -30,6 +29,7 @@ import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import part
 from verdict import tell_verdicts
 from verdict import verdict as row_of_verdict
 
@@ -268,16 +268,9 @@ def draw(path, rows, fits, found, strains):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
-    parser.add_argument("work", type=pathlib.Path)
-    parser.add_argument("figure", nargs="?")
-    parser.add_argument("--count", type=int, default=5)
-    options = parser.parse_args()
-    program = str(pathlib.Path(options.program).resolve())
-    options.work.mkdir(parents=True, exist_ok=True)
-    rows, fits = strength(program, options.work, options.count)
-    found, strains = collapse(program, options.work, options.count)
+    options = part.options(__doc__)
+    rows, fits = strength(options.program, options.work, options.count)
+    found, strains = collapse(options.program, options.work, options.count)
     if options.figure:
         draw(options.figure, rows, fits, found, strains)
     tell_verdicts()
