@@ -101,6 +101,18 @@ TEST_CASE("a mistake in the file of materials is told with line, key, value and 
     CHECK(outcome.output.starts_with("refused\nelement 0, point 0: "));
     CHECK_THAT(outcome.output, Contains(told));
   }
+  // Of what is echoed the log has 80 letters at most, all of them printable.
+  const std::string letters(200, 'k');
+  for (const std::string& text :
+       {"[pool]\n" + letters + " = 2\n" + material, "[pool]\n\"" + letters + " b\" = 2\n" + material,
+        material + "tangent = \"\\u001b " + letters + " " + letters + "\"\n",
+        "[[material]]\nnumber = 1\nspecimen = \"" + letters + ".h5\"\n"}) {
+    here.write("rvelab_umat.toml", text);
+    const Outcome outcome = here.run("told .", hosts);
+    INFO(text);
+    CHECK(outcome.output.starts_with("refused\nelement 0, point 0: "));
+    CHECK_THAT(outcome.output, !Contains(std::string(80, 'k')) && !Contains("\x1b"));
+  }
   std::filesystem::remove(here / "rvelab_umat.toml");
   CHECK_THAT(here.run("told .", hosts).output, Contains("let RVELAB_UMAT name the file"));
 

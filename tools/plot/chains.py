@@ -101,7 +101,7 @@ def draw_state(axes, state, title):
     add_key(axes, mean)
     slab = "" if state.dimension == 2 else ", slab of two mean diameters"
     axes.set_title(title + slab, fontsize=11, loc="left")
-    return f"{len(state.normal_force)} contacts, {strong} above the mean force of {mean:.4g} N"
+    return f"{len(state.normal_force)} contacts, {strong} above the mean force of {mean:.3g} N"
 
 
 def draw(found, options):

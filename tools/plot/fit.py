@@ -60,9 +60,23 @@ def draw_posterior(axes, parameter, sample, tests):
     axes.set_xlim(low, high)
     axes.set_yticks([])
     axes.set_xlabel(parameter["key"], fontsize=9)
-    digits = 2 - math.floor(math.log10(parameter["high_95"] - parameter["low_95"])) - 1
-    shown = [f"{parameter[name]:.{max(digits, 0)}f}" for name in ("mean", "low_95", "high_95")]
-    axes.set_title(f"{shown[0]} ({shown[1]} to {shown[2]})", fontsize=9)
+    axes.set_title(in_words(parameter), fontsize=9)
+
+
+def in_words(parameter):
+    """Mean and interval of a parameter, in the digits that the interval leaves."""
+    mean, low, high = (parameter[name] for name in ("mean", "low_95", "high_95"))
+    if not high > low:
+        return records.plain(mean)
+    places = 1 - math.floor(math.log10(high - low))
+    shown = [records.plain(round(value, places)) if places <= 0 else f"{value:.{places}f}" for value in (mean, low, high)]
+    return f"{shown[0]} ({shown[1]} to {shown[2]})"
+
+
+def target_in_words(target):
+    fit, error = target["fit"], target["standard_error"]
+    measured = records.plain(target["value"]) + (f" +- {records.plain(error)}" if error else "")
+    return f"{target['name']}\nmeasured {measured}\nfit {records.with_error(fit['mean'], fit['standard_deviation'])}"
 
 
 def draw_targets(axes, targets):
@@ -75,8 +89,7 @@ def draw_targets(axes, targets):
     axes.axvline(0, color="crimson", linewidth=1)
     axes.set_xlim(*(lambda reach: (-reach, reach))(max(3, *np.abs(axes.get_xlim()))))
     axes.set_ylim(len(targets) - 0.5, -0.5)
-    axes.set_yticks(range(len(targets)), [f"{target['name']}\n{target['value']:.4g}, fit {target['fit']['mean']:.4g}"
-                                          for target in targets], fontsize=8)
+    axes.set_yticks(range(len(targets)), [target_in_words(target) for target in targets], fontsize=8)
     axes.set_xlabel("fit less measured, in standard deviations", fontsize=9)
 
 
@@ -88,18 +101,16 @@ def draw_curve(axes, rows):
     def column(name, factor=scale):
         return factor * np.array([float(row[name]) if row[name] else np.nan for row in rows])
     x = column("x", across)
-    axes.fill_between(x, column("low_95"), column("high_95"), color="tab:blue", alpha=0.2, linewidth=0, label="fit, 95 %")
+    axes.fill_between(x, column("low_95"), column("high_95"), color="tab:blue", alpha=0.2, linewidth=0, label="95 % of the fit")
     axes.plot(x, column("fit"), color="tab:blue", label="fit")
     axes.errorbar(x, column("measured"), yerr=column("error"), fmt="o", color="k", markersize=3, capsize=2, linewidth=0.8,
                   label="measured")
     if rows[0]["abscissa"] == "p":
         kinds.log_axis(axes.xaxis, x)
-    axes.set_xlabel(below, fontsize=9)
-    axes.set_ylabel(label, fontsize=9)
     pressure = float(rows[0]["pressure_Pa"] or 0)
-    if pressure > 0:
-        axes.set_title(f"{records.plain(pressure / 1e3)} kPa", fontsize=9)
-    axes.legend(fontsize=7)
+    axes.set_xlabel(below + (f" at {records.plain(pressure / 1e3)} kPa" if pressure > 0 else ""), fontsize=9)
+    axes.set_ylabel(label, fontsize=9)
+    axes.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
 
 
 def panels(count):
@@ -126,8 +137,7 @@ def draw_fit(found, rows, options):
     for group in measured:
         draw_curve(axes.pop(0), [rows[k] for k in group])
     figure.savefig(options.output)
-    told = [f"{parameter['key']} {parameter['mean']:.4g} ({parameter['low_95']:.4g} to {parameter['high_95']:.4g})"
-            for parameter in found["parameters"]]
+    told = [f"{parameter['key']} {in_words(parameter)}" for parameter in found["parameters"]]
     return f"{options.output}: {', '.join(told)}; {len(found['tests'])} tests"
 
 

@@ -182,6 +182,8 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     if cohesion:
         label += f", c = {cohesion / 1e3:.3g} kPa"
         text += f", cohesion {cohesion:.0f} Pa: the tangent angle of a cohesive soil"
+    elif len({round(float(test.pressure), -2) for test in tests}) == 1:
+        label += " (through the origin)"  # one pressure tells no cohesion
     if tension:
         label += f", $\\sigma_t$ = {tension / 1e3:.3g} kPa"
         text += f", tensile strength {tension:.0f} Pa"

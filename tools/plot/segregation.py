@@ -3,6 +3,7 @@
 import pathlib
 
 from records import plt  # first: it says which package is missing
+import curves as kinds
 import h5py
 import numpy as np
 
@@ -45,15 +46,23 @@ def means_of(frames):
 def figure(run, frames, output):
     times, means = means_of(frames)
     up = 2 if any(np.any(each[:, 2] != 0) for each in means.values()) else 1
-    canvas, panels = plt.subplots(1, 2, figsize=(8, 3.2), sharex=True)
-    for axes, axis, label in zip(panels, (0, up), ("ahead of the soil (m)", "above the soil (m)")):
+    canvas, panels = plt.subplots(1, 2, figsize=(8.6, 3.6), sharex=True)
+    for axes, axis, label in zip(panels, (0, up), ("ahead of the soil", "above the soil")):
+        scale, unit = kinds.length_unit(max(np.abs(each[:, axis]).max() for each in means.values()) or 1)
         axes.axhline(0, color="0.6", linewidth=0.8)
         for name, each in means.items():
-            axes.plot(times, each[:, axis], label=name)
+            axes.plot(times, scale * each[:, axis], label=name)
+        axes.locator_params(axis="x", nbins=6)
         axes.set_xlabel("time (s)")
-        axes.set_ylabel("mean place, " + label)
-    panels[1].legend()
-    canvas.tight_layout()
+        axes.set_ylabel(f"mean place, {label} ({unit})")
+    handles, labels = panels[0].get_legend_handles_labels()
+    canvas.tight_layout(rect=(0, 0, 1, 0.92))
+    canvas.legend(handles, labels, loc="upper center", ncols=2, frameon=False)
     canvas.savefig(output)
-    last = "; ".join(f"{name}: {each[-1, 0]:+.3g} m along x, {each[-1, up]:+.3g} m up" for name, each in means.items())
+    last = "; ".join(f"{name}: {of_length(each[-1, 0])} along x, {of_length(each[-1, up])} up" for name, each in means.items())
     return f"{output}: {pathlib.Path(run).name}, {last}"
+
+
+def of_length(value):
+    scale, unit = kinds.length_unit(abs(value) or 1)
+    return f"{scale * value:+.3g} {unit}"

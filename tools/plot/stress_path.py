@@ -52,6 +52,8 @@ def draw_axes_of_plane(plane):
         end = reach * math.cos(math.radians(angle)), reach * math.sin(math.radians(angle))
         plane.plot([0, end[0]], [0, end[1]], color="0.7", linewidth=0.8)
         plane.annotate(name, 1.06 * np.array(end), ha="center", va="center", color="0.4")
+    plane.update_datalim([(-1.12 * reach, -0.68 * reach), (1.12 * reach, 1.12 * reach)])  # the names stand within the frame
+    plane.autoscale_view()
     plane.set_title("deviatoric plane (kPa)", fontsize=10, loc="left")
 
 

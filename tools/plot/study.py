@@ -12,7 +12,11 @@ import math
 import pathlib
 
 import records  # first: it says which package is missing
+import curves as kinds
 import matplotlib.pyplot as plt
+
+
+ROOM = 1.6  # over the least and the largest cost
 
 
 def read_study(folders):
@@ -41,29 +45,34 @@ def label_of(point):
     return ", ".join(point["values"].values()) or "protocol"
 
 
-def draw_against(axes, study, cost, front):
-    """One panel; the points that both coordinates of can stand on logarithmic axes."""
+def draw_against(axes, study, cost, unit, front):
+    """One panel, costs in `unit`; the points that both coordinates of can stand on logarithmic axes."""
     error, high, rms = "median_error_over_p", "percentile_95_error_over_p", "rms_error_over_p"
     shown = [point for point in study["points"] if is_positive(point[cost]) and is_positive(point[error])]
     for place, point in enumerate(sorted(shown, key=lambda point: point[cost])):
-        x, y = point[cost], point[error]
+        x, y = point[cost] / unit, point[error]
         if is_positive(point[high]):
             axes.plot([x, x], [y, point[high]], color="0.75", linewidth=1, zorder=1)
         axes.plot(x, y, "o", color="C0", markerfacecolor="C0" if point[front] else "white", markersize=6, zorder=3)
         right = place % 2 == 1  # of neighbours one is labelled on either side
         axes.annotate(label_of(point), (x, y), xytext=(6, 4) if right else (-6, -9), textcoords="offset points",
                       fontsize=7, ha="left" if right else "right")
-    crosses = [(point[cost], point[rms]) for point in shown if is_positive(point[rms])]
+    crosses = [(point[cost] / unit, point[rms]) for point in shown if is_positive(point[rms])]
     axes.plot(*zip(*crosses), "x", color="0.5", markersize=4, zorder=2, label="root mean square")
-    joined = sorted((point[cost], point[error]) for point in shown if point[front])
+    joined = sorted((point[cost] / unit, point[error]) for point in shown if point[front])
     axes.plot(*zip(*joined), color="C0", linewidth=1, zorder=2, label="Pareto front")
     reference = study["reference"]
     if is_positive(reference[cost]) and is_positive(reference[error]):
-        axes.plot(reference[cost], reference[error], "s", color="C3", markersize=5, zorder=3,
+        axes.plot(reference[cost] / unit, reference[error], "s", color="C3", markersize=5, zorder=3,
                   label="reference before its relaxation")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.margins(x=0.3, y=0.12)
+        drawn = [*shown, reference]
+    else:
+        drawn = shown
+    costs = [point[cost] / unit for point in drawn]
+    errors = [point[error] for point in drawn] + [point[name] for point in shown for name in (high, rms)]
+    # Labels stand beside the points.
+    kinds.log_axis(axes.xaxis, [min(costs) / ROOM, *costs, max(costs) * ROOM])
+    kinds.log_axis(axes.yaxis, [value for value in errors if is_positive(value)])
     return len(shown)
 
 
@@ -71,10 +80,10 @@ def draw(study, options):
     if not any(is_positive(point["median_error_over_p"]) for point in study["points"]):
         raise ValueError("no grid point has a median error above 0; see study.csv for what there is")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.2), sharey=True)
-    shown = draw_against(left, study, "processor_s_per_increment", "on_front_of_processor_time")
-    draw_against(right, study, "grain_steps_per_increment", "on_front_of_grain_steps")
-    left.set_xlabel("processor time of an increment (s)")
-    right.set_xlabel("grain-steps of an increment")
+    shown = draw_against(left, study, "processor_s_per_increment", 1e-3, "on_front_of_processor_time")
+    draw_against(right, study, "grain_steps_per_increment", 1e3, "on_front_of_grain_steps")
+    left.set_xlabel("processor time of an increment (ms)")
+    right.set_xlabel("grain-steps of an increment (thousands)")
     left.set_ylabel("error $|\\sigma - \\sigma_r|\\,/\\,p$, median")
     left.legend(fontsize=8, loc="lower left")
     keys = ", ".join(variation["key"] for variation in study["study"]["vary"])

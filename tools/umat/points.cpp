@@ -3,6 +3,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "rvelab/io/utf8.hpp"
+
 namespace umat {
 
 namespace {
@@ -151,9 +153,10 @@ Step Points::step(const Start& start, const Matrix3& dH, double dt, bool with_ta
 void log_failure(const std::string& text) {
   static std::mutex mutex;
   static std::set<std::string> written;
+  const std::string line = rvelab::io::message_line(text);  // paths and keys may be long, and of any bytes
   const std::lock_guard lock(mutex);
-  if (written.size() >= 100 || !written.insert(text).second) return;
-  std::ofstream("rvelab_umat.log", std::ios::app) << text << '\n';
+  if (written.size() >= 100 || !written.insert(line).second) return;
+  std::ofstream("rvelab_umat.log", std::ios::app) << line << '\n';
 }
 
 }  // namespace umat

@@ -7,11 +7,16 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "rvelab/io/utf8.hpp"
+#include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/toml_source.hpp"
 
 namespace umat {
 
 namespace {
+
+/// What stands in the file, as a message shows it.
+std::string shown(const std::string& text) { return rvelab::keys::shortened(rvelab::io::printable(text)); }
 
 /// One table of the file, with words for what is wrong in it.
 struct Table {
@@ -22,7 +27,7 @@ struct Table {
   [[noreturn]] void refuse(const std::string& key, const std::string& what) const {
     const toml::node* const node = keys.get(key);
     const auto line = node == nullptr ? keys.source().begin.line : node->source().begin.line;
-    throw std::runtime_error(path + ", line " + std::to_string(line) + ": " + name + "." + key + " " + what);
+    throw std::runtime_error(path + ", line " + std::to_string(line) + ": " + name + "." + shown(key) + " " + what);
   }
   void expect_keys(std::initializer_list<std::string_view> allowed) const {
     std::string words;
@@ -43,7 +48,7 @@ struct Table {
   bool choice(const std::string& key, const std::string& usual, const std::string& other) const {
     const std::string found = text(key, usual);
     if (found != usual && found != other)
-      refuse(key, "is \"" + found + "\"; allowed: \"" + usual + "\" (the default) or \"" + other + "\"");
+      refuse(key, "is \"" + shown(found) + "\"; allowed: \"" + usual + "\" (the default) or \"" + other + "\"");
     return found == other;
   }
   void number(const std::string& key, double& to) const {

@@ -1,6 +1,6 @@
 """Verdicts of kept tables by the bars of today, without making their runs again.
 
-    judge.py RVELAB FOLDER RESULTS TABLE...     # mpm_fluid_scenes, mpm_shaking, mpm_pipe, steady_state, pieces
+    judge.py RVELAB FOLDER RESULTS TABLE...     # mpm_fluid_scenes, mpm_shaking, mpm_pipe, steady_state, pieces, yade_increments
 
 What a table measured is read from its rows as they were printed, and judged by the functions that judge a new run; runs that
 isolate a cause are made, or found in FOLDER. The rows of a group are written again where its first one stood, and the third line
@@ -123,6 +123,23 @@ def large_shear():
     table.write("porosity 0.282")
 
 
+def yade_increments():
+    """The best settings beside YADE, from the rows as they were printed; the verdicts stand at the end."""
+    import yade_increments_report as report
+    table = Table("yade_increments")
+    end = next((k for k, line in enumerate(table.lines) if line.startswith("a step: ")), len(table.lines))
+    table.lines = table.lines[:end]
+    for line in table.lines:
+        words = re.split(r"  +", line)
+        if len(words) > 6 and words[3] in ("YADE", "settings") and words[2].endswith("%"):
+            report.judged.append((", ".join(words[:3]), words[3], words[4], float(words[6].split()[0])))
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        report.verdicts(report.judged)
+    table.lines += printed.getvalue().rstrip("\n").splitlines()
+    table.write("the best settings")
+
+
 def pieces():
     """Time ratio and its bar, then error, standard error and tolerance of each quarter, by the constant of pieces.cpp."""
     table = Table("pieces")
@@ -141,7 +158,8 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     for name in cases:
         {"mpm_fluid_scenes": mpm_fluid_scenes, "mpm_shaking": mpm_shaking, "mpm_pipe": mpm_pipe,
-         "steady_state": large_shear, "pieces": pieces}[name]()
+         "steady_state": large_shear, "pieces": pieces,
+         "yade_increments": yade_increments}[name]()
 
 
 if __name__ == "__main__":

@@ -207,6 +207,7 @@ def main():
         report.print_state(name, list(INCREMENTS), chosen, timed(programs, base, name, chosen, options.rounds))
     report.print_agreement(results)
     report.print_prices(results)
+    report.verdicts(report.judged)
     report.draw(results, TARGETS, options.figure)
 
 

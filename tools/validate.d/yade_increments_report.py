@@ -8,9 +8,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from verdict import tell_verdicts, verdict
+
 COLUMNS = (("state", 11), ("mode", 5), ("error", 5), ("of", 11), ("steps and settings", 27), ("its error", 9),
            ("ms, restored", 24), ("ms, going on", 26), ("times, restored", 19), ("times, going on", 19))
 
+judged = []  # rows of print_state that verdicts() takes
 NUMBERED = ("YADE", "tolerance", "one setting", "settings")  # points of a target, as choice() gives them
 
 
@@ -54,6 +57,31 @@ def print_state(name, modes, chosen, times):
                     if number and theirs else []
                 ms_of_rounds = [spread([ms[k] for ms in own]) for k in (0, 1)]
                 line(*head, words(point), f"{100 * point['error']:.2g} %", *ms_of_rounds, *ratios)
+                if head[3] in ("YADE", "settings"):
+                    judged.append((f"{name}, {modes[mode]}, {head[2]}", head[3], words(point), statistics.median(ms for ms, _ in own)))
+
+
+def verdicts(rows):
+    """rows: (case, whose, steps, restored ms) of YADE and of the best settings. Where both make as many steps the ratio of their times is
+    that of a step; the best settings need no more steps than YADE, so that this ratio is the least that is asked."""
+    def steps_of(words):
+        return sum(map(int, words.split(",")[0].split("+")))
+
+    # Of the rows of most steps, where what a call costs beside its steps is nothing.
+    longest = {whose: max((row for row in rows if row[1] == whose), key=lambda row: steps_of(row[2])) for whose in ("YADE", "settings")}
+    step = {whose: row[3] / steps_of(row[2]) for whose, row in longest.items()}
+    least = step["YADE"] / step["settings"]
+    print(f"\na step: YADE {1e3 * step['YADE']:.0f} us, rvelab {1e3 * step['settings']:.1f} us (of {steps_of(longest['YADE'][2])} and "
+          f"{steps_of(longest['settings'][2])}): {least:.0f} times\n")
+    of_yade = {row[0]: row for row in rows if row[1] == "YADE"}
+    for case, whose, words, ms in rows:
+        if whose == "YADE":
+            continue
+        ratio, each = of_yade[case][3] / ms, ms / steps_of(words)
+        verdict(f"{case}: YADE's time over rvelab's, restored", f"{ratio:.1f}", f"{least:.0f} and more", ratio >= least,
+                each > 1.5 * step["settings"] and ", r " in words,
+                f"a start to a tolerance is measured on a copy: {1e3 * each:.0f} us for each of the {steps_of(words)} sub-steps that are counted")
+    tell_verdicts()
 
 
 def print_agreement(results):
