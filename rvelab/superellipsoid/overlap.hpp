@@ -142,10 +142,10 @@ inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V
     step.s[m] = frame.u1[m] * y.first + frame.u2[m] * y.second;
     const V relative = (modes.growth[m] * modes.share[m]) * step.s[m];
     step.farthest = larger_of(step.farthest, magnitude_of(relative));
-    const V z = clamped(one + relative, V{} + 1e280), size = larger_of(magnitude_of(z), V{} + 1e-6);
-    const V P = exp2_of(clamped((one / modes.share[m] - 1.0) * log2_of(size), V{} + 800.0));
+    const V z = clamped(one + relative, V{} + 1e100), size = larger_of(magnitude_of(z), V{} + 1e-6);
+    const V P = exp2_of(clamped((one / modes.share[m] - 1.0) * log2_of(size), V{} + 600.0));
     modes.k[m] = modes.k[m] / P;
-    followed[m] = (clamped(z * P, V{} + 1e300) - 1.0) / modes.growth[m];
+    followed[m] = (z * P - 1.0) / modes.growth[m];
   }
   const ModeFrame<V> next = frame_of(modes.k, modes.along, at.n, shift);
   V F1 = -(shift * dot(step.plain, next.first)), F2 = -(shift * dot(step.plain, next.second));

@@ -149,10 +149,11 @@ inline Place search_least(const OverlapPair& pair, const Place& from, bool steps
 /// Steps before a pair is left to the search.
 constexpr int superellipsoid_steps = 12;
 
-/// Whether the next step leads to the least: f to the third power of it, n to the second.
+/// Whether the next step, of `part` of where the modes are at most, leads to the least: f to the third power of it, n
+/// and points to the second.
 template <class V>
-inline __attribute__((always_inline)) auto is_near_least(const OverlapStep<V>& step) {
-  return (step.farthest <= 1e-4) & (dot(step.plain, step.plain) <= 2.5e-9);
+inline __attribute__((always_inline)) auto is_near_least(const OverlapStep<V>& step, double part) {
+  return (step.farthest <= part) & (dot(step.plain, step.plain) <= 0.25 * (part * part));
 }
 
 /// Two grains where f is least: f, m (negative: their distance), n from i to j, the middle of the points of both, from
@@ -163,7 +164,7 @@ struct SuperellipsoidContact {
   Place at;
 };
 inline SuperellipsoidContact contact_at(const OverlapPair& pair, const Place& at, const OverlapStep<double>& step) {
-  const bool near = is_near_least(step);
+  const bool near = is_near_least(step, 1e-6);
   SuperellipsoidContact contact = {at.overlap - (near ? 0.5 * step.gain : 0.0),
                                    near ? turned_by(at.n, step.turn) : at.n,
                                    plus(plus(at.i.point, 1.0, at.j.point), 1.0, pair.branch), at};
@@ -182,11 +183,11 @@ inline SuperellipsoidContact contact_of(const OverlapPair& pair) {
   if (!(at.overlap < 1e300)) at = overlap_at(pair, pair.axes_i.x);  // the centres are one
   const Place first = at;
   OverlapStep<double> step = next_step(at, rolling);
-  for (int k = 0; k < superellipsoid_steps && !is_near_least(step) && !is_least(at, step, size); ++k) {
+  for (int k = 0; k < superellipsoid_steps && !is_near_least(step, 1e-6) && !is_least(at, step, size); ++k) {
     at = overlap_at(pair, turned_by(at.n, step.turn));
     step = next_step(at, rolling);
   }
-  bool found = is_near_least(step) || is_least(at, step, size);
+  bool found = is_near_least(step, 1e-6) || is_least(at, step, size);
   if (!found) {
     at = lowest_from(pair, at.overlap < first.overlap ? at : first);
     step = next_step(at, rolling);

@@ -60,7 +60,7 @@ inline __attribute__((always_inline)) V larger_of(V a, V b) {
   return a > b ? a : b;
 }
 
-/// N of u, v >= 0.
+/// N of u, v > 0.
 template <class V>
 struct DualNorm {
   V value, by_u, by_v;
@@ -68,20 +68,16 @@ struct DualNorm {
 };
 template <class V>
 inline __attribute__((always_inline)) DualNorm<V> dual_norm(V u, V v, V share, V root) {
-  const V one = V{} + 1.0, zero = V{}, floor = V{} + 1e-280;
   const auto first = u >= v;
   const V larger = first ? u : v, smaller = first ? v : u;
-  const V inverse = 1.0 / ((larger > 0.0) ? larger : one);
-  const V ratio = smaller * inverse, raised = larger_of(ratio, floor);
-  const V t = power_of(raised, share), sum = 1.0 + raised * t;
-  const V g = power_of(sum, root), tangent = (ratio >= floor) ? g * t : zero;
+  const V products = 1.0 / (u * v), ratio = smaller * smaller * products;
+  const V t = power_of(ratio, share), sum = 1.0 + ratio * t, g = power_of(sum, root), gt = g * t;
   DualNorm<V> norm;
   norm.value = larger * (sum * g);
-  norm.by_u = first ? g : tangent;
-  norm.by_v = first ? tangent : g;
-  const V products = (inverse * inverse) / raised;  // 1/(u v)
+  norm.by_u = first ? g : gt;
+  norm.by_v = first ? gt : g;
   norm.growth = first ? -products : products;
-  norm.stiffness = share * (g * (g * t)) * products / ((larger > 0.0) ? norm.value : one);
+  norm.stiffness = share * (g * gt) * products / norm.value;
   return norm;
 }
 
@@ -95,8 +91,12 @@ template <class V>
 inline __attribute__((always_inline)) SupportAt<V> support_at(const SuperellipsoidForm<V>& form,
                                                               const SuperellipsoidAxes<V>& axes, const Triple<V>& m) {
   const Triple<V> own = in_frame(axes, m);
-  const V px = form.half.x * magnitude_of(own.x), py = form.half.y * magnitude_of(own.y);
-  const V pz = form.half.z * magnitude_of(own.z);
+  // Where an axis is across m, modes have no bound or, at the poles, no direction: there they are those of 1e-60 beside
+  // it.
+  const Triple<V> all = {form.half.x * magnitude_of(own.x), form.half.y * magnitude_of(own.y),
+                         form.half.z * magnitude_of(own.z)};
+  const V least = 1e-60 * larger_of(all.x, larger_of(all.y, all.z)), zero = V{};
+  const V px = larger_of(all.x, least), py = larger_of(all.y, least), pz = larger_of(all.z, least);
   const DualNorm<V> xy = dual_norm(px, py, form.share_xy, form.root_xy);
   const DualNorm<V> z = dual_norm(xy.value, pz, form.share_z, form.root_z);
   const Triple<V> signed_half = {with_sign(form.half.x, own.x), with_sign(form.half.y, own.y),
@@ -104,7 +104,8 @@ inline __attribute__((always_inline)) SupportAt<V> support_at(const Superellipso
   SupportAt<V> at;
   at.height = z.value;
   const V sx = signed_half.x * xy.by_u, sy = signed_half.y * xy.by_v;
-  at.point = in_world(axes, Triple<V>{sx * z.by_u, sy * z.by_u, signed_half.z * z.by_v});
+  at.point = in_world(axes, Triple<V>{(all.x > 0.0) ? sx * z.by_u : zero, (all.y > 0.0) ? sy * z.by_u : zero,
+                                      (all.z > 0.0) ? signed_half.z * z.by_v : zero});
   at.xy = {xy.stiffness * z.by_u, in_world(axes, Triple<V>{signed_half.x * py, -(signed_half.y * px), V{}}), xy.growth,
            form.share_xy};
   at.z = {z.stiffness, in_world(axes, Triple<V>{pz * sx, pz * sy, -(xy.value * signed_half.z)}), z.growth,
