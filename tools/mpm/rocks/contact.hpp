@@ -15,6 +15,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "rvelab/contact/hertz_mindlin.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -39,27 +40,18 @@ struct RockSoil {
 /// Constants of one pair: f_n = k delta^(3/2) or k delta.
 template <int D>
 struct RockPair {
+  using Law = rvelab::HertzMindlinLaw;
   double k = 0, kt = 0;  ///< space: before delta^(3/2) and sqrt(delta); plane: N/m
   double friction = 0;
   double damping = 0;  ///< cn
 
   /// `ri`, `rj`: m, of curvature; infinite for a plane. `mass`: kg, m* of the pair. `thickness`: m, in the plane.
   RockPair(const RockMaterial& a, double ri, const RockMaterial& b, double rj, double mass, double thickness) {
-    const auto compression = [](const RockMaterial& m) {
-      return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
-    };
-    const auto shear = [](const RockMaterial& m) {
-      return 2 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio) / m.young_modulus;
-    };
-    const double e_star = 1 / (compression(a) + compression(b)), g_star = 1 / (shear(a) + shear(b));
-    if constexpr (D == 2) {
-      k = 0.25 * std::numbers::pi * e_star * thickness;
-      kt = std::numbers::pi * g_star * thickness;
-    } else {
-      const double root = std::isinf(rj) ? std::sqrt(ri) : std::sqrt(ri * rj / (ri + rj));
-      k = 4 * root / 3 * e_star;
-      kt = 8 * root * g_star;
-    }
+    // Of r* = 1 m they are 4/3 E* and 8 G*. A plane is a sphere so large that r* is the other's, to the last bit.
+    const rvelab::ContactConstants constants =
+        D == 2 ? Law::mix(a, 2, b, 2, 0) : Law::mix(a, ri, b, std::min(rj, 1e30 * ri), 0);
+    k = D == 2 ? 0.1875 * std::numbers::pi * constants.kn * thickness : constants.kn;
+    kt = D == 2 ? 0.125 * std::numbers::pi * constants.kt * thickness : constants.kt;
     friction = std::min(a.friction, b.friction);
     const double e = std::min(a.restitution, b.restitution);
     if (e >= 1) return;
@@ -67,11 +59,20 @@ struct RockPair {
     const double zeta = -log / std::sqrt(std::numbers::pi * std::numbers::pi + log * log);
     damping = (D == 2 ? 2 : std::sqrt(5.0)) * zeta * std::sqrt(mass * k);
   }
-  double normal_force(double overlap) const { return D == 2 ? k * overlap : k * overlap * std::sqrt(overlap); }
-  double normal_energy(double overlap) const { return normal_force(overlap) * overlap * (D == 2 ? 0.5 : 0.4); }
+  double normal_force(double overlap) const {
+    return D == 2 ? k * overlap : Law::Force::normal_force(k, overlap, std::sqrt(overlap), 0.0);
+  }
+  double normal_energy(double overlap) const {
+    return D == 2 ? 0.5 * normal_force(overlap) * overlap
+                  : Law::Force::normal_energy(k, overlap, std::sqrt(overlap), 0.0);
+  }
   /// N/m, of a further overlap.
-  double normal_stiffness(double overlap) const { return D == 2 ? k : 1.5 * k * std::sqrt(overlap); }
-  double tangential_stiffness(double overlap) const { return D == 2 ? kt : kt * std::sqrt(overlap); }
+  double normal_stiffness(double overlap) const {
+    return D == 2 ? k : Law::Force::normal_stiffness(k, std::sqrt(overlap));
+  }
+  double tangential_stiffness(double overlap) const {
+    return D == 2 ? kt : Law::Force::tangential_stiffness(kt, std::sqrt(overlap));
+  }
   double dashpot(double overlap) const { return D == 2 ? damping : damping * std::sqrt(std::sqrt(overlap)); }
   /// m, of a mass (kg) that comes at a speed (m/s) and is stopped by the spring.
   double reach(double mass, double speed) const {

@@ -138,7 +138,11 @@ struct PolyhedronPair {
 /// about it.
 std::vector<Vec<3>> flat_of(const Polyhedron& form, const Vec<3>& n) {
   const double level = form.height(n) - 1e-6 * form.size(), least = 1e-9 * form.size() * form.size();
-  const Eigen::Matrix<double, 3, 2> T = across<3>(n);
+  int axis = 0;
+  n.cwiseAbs().minCoeff(&axis);
+  Eigen::Matrix<double, 3, 2> T;
+  T.col(0) = n.cross(Vec<3>::Unit(axis)).normalized();
+  T.col(1) = n.cross(Vec<3>(T.col(0)));
   std::vector<std::pair<Vec<2>, Vec<3>>> flat;  // in the plane across the direction, in space
   for (const Vec<3>& corner : form.corners) {
     if (corner.dot(n) >= level) flat.emplace_back(T.transpose() * corner, corner);

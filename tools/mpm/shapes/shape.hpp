@@ -6,7 +6,8 @@
 // shortest way that parts them. A force along n whose size is a function of the gap has an energy: by the envelope
 // theorem the gap changes with x_b by n.
 //
-// Superquadrics take powers of libm: the same machine gives the same bits, another libm need not.
+// Superquadrics are those of rvelab/superellipsoid: gaps have the same bits on every machine; volumes, inertia and the
+// ball that rolls inside take powers of libm, which another one need not share.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -108,9 +109,9 @@ struct Gap {
 };
 
 /// The gap of two rocks depends on nothing but their shapes and places. gap_between(b, a) has the same bits, the normal
-/// turned round. It is the largest value, certainly so for spheres, two polyhedra, rocks apart, and superquadrics that
-/// overlap by no more than their least radii of curvature together; deeper in each other superquadrics may have a
-/// shorter way out than the one found. Two polyhedra cost as the product of their edges where they are apart.
+/// turned round. It is the largest value; of superquadrics
+/// deeper in each other than their least radii of curvature the largest to 1e-10 of their sizes. Two polyhedra cost as
+/// the product of their edges where they are apart.
 template <int D>
 Gap<D> gap_between(const Placed<D>& a, const Placed<D>& b);
 
