@@ -20,7 +20,7 @@ struct TopRow {
 };
 
 std::vector<TopRow> rows_of_tops() {
-  std::ifstream file("tests/data/grains/top.csv");
+  std::ifstream file(RVELAB_TEST_DATA "/grains/top.csv");
   std::string line;
   std::getline(file, line);
   std::vector<TopRow> rows;

@@ -24,7 +24,7 @@ struct UnionRow {
 };
 
 std::vector<UnionRow> rows_of_unions() {
-  std::ifstream file("tests/data/grains/clump.csv");
+  std::ifstream file(RVELAB_TEST_DATA "/grains/clump.csv");
   std::string line;
   std::getline(file, line);
   std::vector<UnionRow> rows;
