@@ -160,37 +160,67 @@ void follow_wrapping(const std::vector<Image>& moved, Assembly& assembly) {
     for (std::size_t k = 0; k < 3; ++k) assembly.bodies.image[g][k] += moved[g][k];
 }
 
-void gather_on_bodies(const Model& model, const Assembly& assembly, std::vector<Resultant>& forces) {
-  const BodyModel& bodies = *model.bodies;
-  const PairTable& pairs = assembly.pairs;
-  forces.assign(bodies.size(), Resultant{});
-  const bool plane = model.dimension() == 2, rolling = model.contact.rolling;
-  const std::size_t length = plane ? 4 : 8;
-  const double* radius = model.radius.data();
-  const Vector3* arm = assembly.bodies.arm.data();
+namespace {
+
+/// Forces and torques of the pairs, in the order of every sum over them.
+template <int D, bool Rolling>
+void gather(const BodyModel& bodies, const PairTable& pairs, const double* radius, const Vector3* arms,
+            Resultant* resultants) {
+  constexpr std::size_t length = D == 2 ? 4 : 8;
+  const double* force = pairs.force.data();
+  const std::int32_t *owner = bodies.owner.data(), *grain_i = pairs.i.data(), *grain_j = pairs.j.data();
+  const std::uint8_t* touched = pairs.touched.data();
+  const std::size_t near = pairs.near;
   for (const std::int32_t place : pairs.order) {
     const auto p = std::size_t(place);
-    if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
-    const double* row = pairs.force.data() + length * p;
-    const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
-    Resultant &on_i = forces[std::size_t(bodies.owner[i])], &on_j = forces[std::size_t(bodies.owner[j])];
-    if (plane) {
-      on_i.force[0] -= row[0];
-      on_i.force[1] -= row[1];
-      on_i.torque[2] += row[3] - (arm[i][0] * row[1] - arm[i][1] * row[0]);
-      on_j.force[0] += row[0];
-      on_j.force[1] += row[1];
-      on_j.torque[2] += row[2] + (arm[j][0] * row[1] - arm[j][1] * row[0]);
-      continue;
+    if (p >= near && touched[p / 8] == 0) continue;
+    const double* row = force + length * p;
+    const auto i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
+    Resultant &on_i = resultants[owner[i]], &on_j = resultants[owner[j]];
+    const double *ai = arms[i].data(), *aj = arms[j].data();
+    const double fx = row[0], fy = row[1];
+    if constexpr (D == 2) {
+      on_i.force[0] -= fx;
+      on_i.force[1] -= fy;
+      on_i.torque[2] += row[3] - (ai[0] * fy - ai[1] * fx);
+      on_j.force[0] += fx;
+      on_j.force[1] += fy;
+      on_j.torque[2] += row[2] + (aj[0] * fy - aj[1] * fx);
+    } else {
+      const double fz = row[2], si = row[3] - radius[i], sj = row[3] - radius[j];
+      double m[3] = {};
+      if constexpr (Rolling)
+        for (std::size_t k = 0; k < 3; ++k) m[k] = pairs.moment[k][p];
+      on_i.force[0] -= fx;
+      on_i.force[1] -= fy;
+      on_i.force[2] -= fz;
+      on_i.torque[0] += (si * row[4] - m[0]) - (ai[1] * fz - ai[2] * fy);
+      on_i.torque[1] += (si * row[5] - m[1]) - (ai[2] * fx - ai[0] * fz);
+      on_i.torque[2] += (si * row[6] - m[2]) - (ai[0] * fy - ai[1] * fx);
+      on_j.force[0] += fx;
+      on_j.force[1] += fy;
+      on_j.force[2] += fz;
+      on_j.torque[0] += (sj * row[4] + m[0]) + (aj[1] * fz - aj[2] * fy);
+      on_j.torque[1] += (sj * row[5] + m[1]) + (aj[2] * fx - aj[0] * fz);
+      on_j.torque[2] += (sj * row[6] + m[2]) + (aj[0] * fy - aj[1] * fx);
     }
-    const Vector3 force(row[0], row[1], row[2]), turn(row[4], row[5], row[6]);
-    Vector3 moment = Vector3::Zero();
-    if (rolling) moment = {pairs.moment[0][p], pairs.moment[1][p], pairs.moment[2][p]};
-    on_i.force -= force;
-    on_i.torque += (row[3] - radius[i]) * turn - moment - arm[i].cross(force);
-    on_j.force += force;
-    on_j.torque += (row[3] - radius[j]) * turn + moment + arm[j].cross(force);
   }
+}
+
+}  // namespace
+
+void gather_on_bodies(const Model& model, const Assembly& assembly, std::vector<Resultant>& forces) {
+  const BodyModel& bodies = *model.bodies;
+  forces.assign(bodies.size(), Resultant{});
+  const auto by = [&](auto work) {
+    work(bodies, assembly.pairs, model.radius.data(), assembly.bodies.arm.data(), forces.data());
+  };
+  if (model.dimension() == 2)
+    by(gather<2, false>);
+  else if (model.contact.rolling)
+    by(gather<3, true>);
+  else
+    by(gather<3, false>);
 }
 
 Matrix3 virial_of_bodies(const Model& model, const Assembly& assembly) {
