@@ -29,6 +29,7 @@ void add_state(Listing& listing, const Rve& rve) {
   const Matrix3 stress = rve.stress();
   listing.add("dimension", dimension);
   listing.add("grains", network.grains.size());
+  if (network.has_bodies()) listing.add("members", network.members.size());
   listing.add("contacts", network.contacts.size());
   each_interaction_law([&](auto, auto law) {
     using Law = decltype(law);

@@ -84,7 +84,8 @@ Matrix3 branch_fabric(const Network& network) {
 
 Matrix3 orientation_fabric(const Network& network) {
   Matrix3 sum = Matrix3::Zero();
-  if (is_round(network.shape) || network.grains.empty()) return Matrix3::Constant(not_defined);
+  if ((is_round(network.shape) && !network.has_bodies()) || network.grains.empty())
+    return Matrix3::Constant(not_defined);
   for (const GrainState& grain : network.grains) sum += grain.orientation * grain.orientation.transpose();
   return in_laboratory(network, sum / static_cast<double>(network.grains.size()));
 }
@@ -182,6 +183,12 @@ double elastic_energy(const Network& network) {
 double kinetic_energy(const Network& network) {
   if (network.loading == Loading::quasi_static) return 0;
   double sum = 0;
+  for (std::size_t b = 0; b < network.moments.size(); ++b) {
+    const GrainState& body = network.grains[b];
+    const Vector3 spin = body.spin + network.mean_spin;
+    sum += 0.5 * (body.mass * body.velocity.squaredNorm() + spin.dot(network.moments[b] * spin));
+  }
+  if (network.has_bodies()) return sum;
   for (const GrainState& grain : network.grains) {
     const Vector3 spin = grain.spin + network.mean_spin;
     sum += 0.5 * (grain.mass * grain.velocity.squaredNorm() + grain.inertia * spin.squaredNorm());
@@ -192,7 +199,9 @@ double kinetic_energy(const Network& network) {
 double largest_overlap_ratio(const Network& network) {
   double largest = 0;
   for (const ContactState& contact : network.contacts) {
-    const double smaller = std::min(network.grains[contact.i].radius, network.grains[contact.j].radius);
+    const auto& round = network.drawn();
+    const double smaller = std::min(round[std::size_t(network.has_bodies() ? contact.member_i : contact.i)].radius,
+                                    round[std::size_t(network.has_bodies() ? contact.member_j : contact.j)].radius);
     largest = std::max(largest, contact.overlap / smaller);
   }
   return largest;

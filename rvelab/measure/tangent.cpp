@@ -38,11 +38,48 @@ Matrix9 rows_of(const LinearContact& linear) {
   return rows;
 }
 
+Matrix3 crossed(const Vector3& a) {
+  Matrix3 m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
+}
+
+/// A contact of members of two bodies, offsets o from the bodies' centres: the members' branch moves by
+/// db + dtheta_j x o_j - dtheta_i x o_i, their force turns the bodies by +- o x F, and the offset turns under the
+/// force.
+Spring spring_of_bodies(const Network& network, const ContactState& contact) {
+  ContactState of_members = contact;
+  of_members.branch = contact.member_branch;
+  const double ri = network.members[std::size_t(contact.member_i)].radius,
+               rj = network.members[std::size_t(contact.member_j)].radius;
+  Matrix9 to_members = Matrix9::Identity();
+  to_members.block<3, 3>(0, 3) = crossed(contact.offset_i);
+  to_members.block<3, 3>(0, 6) = -crossed(contact.offset_j);
+  Matrix9 to_bodies = Matrix9::Identity();
+  to_bodies.block<3, 3>(3, 0) = -crossed(contact.offset_i);
+  to_bodies.block<3, 3>(6, 0) = crossed(contact.offset_j);
+  Spring spring{&contact, Matrix9::Zero(), Vector9::Zero()};
+  Matrix9 law = rows_of(linearised(of_members, ri, rj, network.model.slip));
+  spring.opening = to_members.topRows<3>().transpose() * contact.normal;
+  if (rescales(network)) {
+    const Matrix9 half = 0.5 * rows_of(unloading_terms(of_members, ri, rj));
+    law += half;
+    spring.unloading = to_bodies * (half.leftCols<3>() * contact.normal);
+  }
+  spring.law = to_bodies * law * to_members;
+  // do x F = -F x (dtheta x o), with - on i: a force on j.
+  const Matrix3 force = crossed(contact.force());
+  spring.law.block<3, 3>(3, 3) -= force * crossed(contact.offset_i);
+  spring.law.block<3, 3>(6, 6) += force * crossed(contact.offset_j);
+  return spring;
+}
+
 /// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
 Spring spring_of(const Network& network, const ContactState& contact) {
   const GrainState &i = network.grains[contact.i], &j = network.grains[contact.j];
   const bool unloads = rescales(network);
+  if (network.has_bodies()) return spring_of_bodies(network, contact);
   if (is_round(network.shape)) {
     Spring spring{&contact, rows_of(linearised(contact, i.radius, j.radius, network.model.slip)), Vector9::Zero()};
     if (!unloads) return spring;
@@ -197,7 +234,8 @@ class Condensed {
   }
 
   double elongation(const Spring& spring, const Vector9& q) const {
-    return is_round(network_.shape) ? spring.contact->normal.dot(q.head<3>()) : spring.opening.dot(q);
+    return is_round(network_.shape) && !network_.has_bodies() ? spring.contact->normal.dot(q.head<3>())
+                                                              : spring.opening.dot(q);
   }
 
   /// Unbalanced load on the degrees of freedom at the motion x, into `load`; its largest component.

@@ -47,12 +47,23 @@ Specimen assembly(const Recipe& recipe, double friction, const Grains& grains, c
   return s;
 }
 
-double contacts_per_grain(const Rve& rve) { return double(rve.network().contacts.size()) / double(rve.size()); }
+double contacts_per_grain(const Rve& rve) {
+  const Network network = rve.network();
+  return double(network.contacts.size()) / double(network.grains.size());
+}
 
 void shrink(Rve& rve, double strain) {
   Matrix3 gradient = Matrix3::Zero();
   for (int k = 0; k < rve.cell().dimension; ++k) gradient(k, k) = -strain;
   rve.apply(gradient, 0);
+}
+
+/// Shrinks the cell until grains that are apart crowd.
+void approach(Rve& rve, int d) {
+  for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
+    shrink(rve, approach_step);
+    if (round == 300) throw IncrementFailed("packing: no contacts after 300 compressions by 1 %; check the radii");
+  }
 }
 
 /// Shrinks until the grains carry a tenth of the pressure in a cell at rest. A step beyond the pressure is undone and
@@ -115,10 +126,24 @@ Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, 
   while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
   Rve rve(assembly(recipe, friction, grains, cell_of(recipe, volume)));
   rve.watch(stop);
-  for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
-    shrink(rve, approach_step);
-    if (round == 300) throw IncrementFailed("packing: no contacts after 300 compressions by 1 %; check the radii");
-  }
+  approach(rve, d);
+  press(recipe, rve);
+  return rve;
+}
+
+/// The same of clumps, which are scattered by the circles (spheres) around them.
+Rve clumps_by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
+                          const std::atomic<bool>* stop) {
+  const int d = dimension_of(recipe.shape);
+  const std::vector<const Clump*> clumps = clumps_of(recipe, graded);
+  Grains around = around_clumps(clumps, graded);
+  double volume = solid_volume(recipe, around) / scattered_fraction(d) * (1 + d * approach_step * uniform());
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, around, uniform)) volume *= 1.1;
+  Specimen s = assembly(recipe, friction, Grains{}, cell_of(recipe, volume));
+  put_clumps(clumps, graded, around, uniform, s);
+  Rve rve(s);
+  rve.watch(stop);
+  approach(rve, d);
   press(recipe, rve);
   return rve;
 }
@@ -258,8 +283,9 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   const Grains graded = graded_grains(recipe);
   const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
   Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, stop)
-            : growth ? by_growth(recipe, graded, friction, uniform, stop)
-                     : by_compression(recipe, graded, friction, uniform, stop);
+            : recipe.clumps ? clumps_by_compression(recipe, graded, friction, uniform, stop)
+            : growth        ? by_growth(recipe, graded, friction, uniform, stop)
+                            : by_compression(recipe, graded, friction, uniform, stop);
 
   rve = steered(rve, recipe, stop);
   Draw result;
@@ -295,6 +321,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   result.specimen.damping = recipe.damping;
   result.specimen.solver = recipe.solver;
   result.specimen.state = SolverState{};
+  for (Body& body : result.specimen.bodies) body.velocity = body.spin = Vector3::Zero();
   auto& grains = result.specimen.grains;
   for (auto* v : {&grains.velocity, &grains.spin}) std::fill(v->begin(), v->end(), Vector3::Zero());
   return result;

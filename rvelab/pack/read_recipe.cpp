@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include "rvelab/error.hpp"
@@ -21,6 +22,10 @@ constexpr Range friction{{0, 1e6}, friction_values};
 constexpr Interval stresses{-pressures.high, pressures.high};
 constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
+/// Words of pack.shape: those of Shape, and clump behind them.
+enum class ShapeName {};
+enum class MemberName { disc, sphere };
+
 void read_pack(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   file.name = reader.required_text("name", "name of the recipe");
@@ -29,13 +34,24 @@ void read_pack(TableReader& reader, RecipeFile& file) {
   };
   Choices shapes;
   for (int number = 0; number < shape_count; ++number) shapes.emplace_back(name(Shape(number)));
-  reader.choice("shape", recipe.shape, shapes, of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D");
+  shapes.emplace_back("clump");
+  auto shape = ShapeName(recipe.shape);
+  auto members = MemberName::sphere;
+  reader.choice("shape", shape, shapes,
+                of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D; clump: bodies of discs or spheres, pack.members");
+  reader.choice("members", members, {"disc", "sphere"}, "shape = clump: what bodies are made of, 2D or 3D");
+  recipe.clumps = int(shape) == shape_count;
+  recipe.shape = recipe.clumps ? round_shape(members == MemberName::disc ? 2 : 3) : Shape(shape);
+  if (!recipe.clumps)
+    reader.refuse("members", "contradicts pack.shape = " + as_toml(shapes[std::size_t(shape)]) +
+                                 "; allowed: with shape = \"clump\"; remove one");
   reader.whole_number("number", recipe.number, {1, 1e8}, "grains in all");
   reader.whole_number("seed", recipe.seed, {0, 9e15},
                       "seed of all random numbers; further specimens of --count take the next seeds");
   reader.number("thickness_m", recipe.thickness, "m", {positive, {{1e-7, 10}}}, "2D: thickness of the slab");
   if (dimension_of(recipe.shape) == 3)
-    reader.refuse("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: in 2D only; remove one");
+    reader.refuse("thickness_m", std::string("contradicts pack.") + (recipe.clumps ? "members" : "shape") +
+                                     " = \"sphere\"; allowed: in 2D only; remove one");
   reader.choice("cell", recipe.oriented, {"upright", "oriented"},
                 "upright: square or cube; oriented: a lattice that compression along the axes never makes slender "
                 "(Kraynik and Reinelt in 2D, a cubic field in 3D)");
@@ -61,6 +77,35 @@ void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
   }
 }
 
+/// Of recipes of clumps: the shape, by name or from a file of members.
+void read_clump(TableReader& reader, GrainFraction& fraction, const Recipe& recipe) {
+  const int d = dimension_of(recipe.shape);
+  std::string clump = "pair";
+  static const std::string meaning =
+      "shape = clump: " + names_of_clumps(3) + " (in 2D " + names_of_clumps(2) +
+      "), or a file NAME.csv with columns x, y, z, r of its members in any unit; radii of the grading are those of the "
+      "disc or sphere of the same area or volume";
+  reader.text("clump", clump, meaning.c_str());
+  if (!recipe.clumps) {
+    reader.refuse("clump", "contradicts pack.shape = " + as_toml(std::string(rvelab::name(recipe.shape))) +
+                               "; allowed: with shape = \"clump\"; remove one");
+    return;
+  }
+  try {
+    if (clump.size() > 4 && clump.ends_with(".csv")) {
+      std::ifstream file(clump);
+      if (!file) throw InputError("clump = " + as_toml(clump) + ": the file cannot be read; give its path");
+      std::ostringstream text;
+      text << file.rdbuf();
+      fraction.clump = clump_of(clump, read_members(text.str(), clump), d);
+    } else {
+      fraction.clump = published_clump(clump, d);
+    }
+  } catch (const InputError& error) {
+    reader.mistake(error.what());
+  }
+}
+
 void read_fraction(TableReader& reader, Recipe& recipe) {
   GrainFraction fraction;
   reader.text("name", fraction.name, "name of a fraction, for --set grains.NAME.key=value");
@@ -78,6 +123,7 @@ void read_fraction(TableReader& reader, Recipe& recipe) {
     }
   }
   read_outlines(reader, fraction, recipe.shape);
+  read_clump(reader, fraction, recipe);
   Choices known;
   for (const Material& each : recipe.materials) known.push_back(each.name);
   const auto found = std::find(known.begin(), known.end(), material);

@@ -42,8 +42,17 @@ void check_recipe(const Recipe& recipe) {
         "one of the two; remove one");
   check_parameters(recipe.contact, recipe.damping, recipe.materials);
   if (recipe.preparation.method == Preparation::Method::regular) check_regular(recipe);
+  if (recipe.clumps && (recipe.preparation.method != Preparation::Method::compression || !recipe.stress))
+    throw InputError(
+        "pack.shape = \"clump\" with preparation.method = \"growth\" or \"regular\", or without a stress; allowed: "
+        "method "
+        "= \"compression\" with target.pressure_Pa or target.stress_Pa; change one");
+  if (recipe.clumps && !is_round(recipe.shape)) throw InputError("clumps are made of discs or spheres");
   double shares = 0;
   for (const GrainFraction& fraction : recipe.fractions) {
+    if (recipe.clumps != fraction.clump.has_value())
+      throw InputError("grains." + fraction.name + " has " + (recipe.clumps ? "no clump" : "a clump") +
+                       ", pack.shape is " + (recipe.clumps ? "\"clump\"" : "not \"clump\"") + "; correct one");
     check_grading(fraction.grading, ("grains." + fraction.name).c_str());
     if (fraction.material >= recipe.materials.size())
       throw InputError("grains." + fraction.name + " names a material that is not there; add it");

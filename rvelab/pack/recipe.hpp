@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/grains/clump.hpp"
 #include "rvelab/grains/grading.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
@@ -20,6 +21,7 @@ struct GrainFraction {
   double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
+  std::optional<Clump> clump;  ///< where the recipe is of clumps: the shape of this fraction
   // Not round:
   double smallest_aspect_ratio = 1, largest_aspect_ratio = 1;  ///< b/a, every value between equally frequent
   double bedding_angle = 0,
@@ -46,6 +48,7 @@ struct Preparation {
 /// A recipe. The same recipe gives the same bits on any number of threads.
 struct Recipe {
   Shape shape = round_shape(2);
+  bool clumps = false;       ///< each grain is a body whose members are of that shape
   std::size_t number = 400;  ///< grains in all
   std::uint64_t seed = 1;
   double thickness = 0.1;  ///< m, of the slab, 2D

@@ -52,6 +52,8 @@ Specimen repeated(const Specimen& one, const Image& times) {
                        "; allowed: 1 or more; correct it");
   Specimen all = one;
   all.grains = Grains{};
+  all.bodies.clear();
+  all.members.clear();
   all.contacts.clear();
   all.state = SolverState{};
   const int nz = d == 3 ? times[2] : 1;
@@ -60,6 +62,17 @@ Specimen repeated(const Specimen& one, const Image& times) {
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < times[1]; ++y)
       for (int x = 0; x < times[0]; ++x)
+        for (Body body : one.bodies) {
+          const auto copy = copy_index({x, y, z}, {times[0], times[1], nz});
+          body.id = std::int64_t(all.bodies.size());
+          body.first += copy * n;
+          body.position += translation(one.cell, {x, y, z});
+          all.bodies.push_back(body);
+        }
+  for (int z = 0; z < nz; ++z)
+    for (int y = 0; y < times[1]; ++y)
+      for (int x = 0; x < times[0]; ++x) {
+        all.members.insert(all.members.end(), one.members.begin(), one.members.end());
         for (std::int32_t g = 0; g < n; ++g) {
           all.grains.id.push_back(std::int64_t(copy_index({x, y, z}, {times[0], times[1], nz})) * n + g);
           all.grains.radius.push_back(one.grains.radius[g]);
@@ -75,6 +88,7 @@ Specimen repeated(const Specimen& one, const Image& times) {
               all.grains, one.grains);
           all.grains.orientation.push_back(one.grains.orientation[g]);
         }
+      }
   const auto turn_contact = [&](Contact& c) {
     c.rolling_moment = -c.rolling_moment;
     // 2D keeps the component along t, which turns round with the normal.

@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/grains/direction.hpp"
+#include "rvelab/specimen/clumps.hpp"
 
 namespace rvelab::pack {
 
@@ -149,6 +150,52 @@ Grains graded_grains(const Recipe& recipe) {
   grains.velocity.assign(recipe.number, Vector3::Zero());
   grains.spin.assign(recipe.number, Vector3::Zero());
   return grains;
+}
+
+std::vector<const Clump*> clumps_of(const Recipe& recipe, const Grains& grains) {
+  const int d = dimension_of(recipe.shape);
+  std::vector<NumberCurve> curves;
+  for (const auto& fraction : recipe.fractions) curves.push_back(number_curve(fraction.grading, d));
+  const auto numbers = numbers_of(recipe, curves);
+  std::vector<const Clump*> clumps;
+  for (std::size_t f = 0; f < numbers.size(); ++f) clumps.insert(clumps.end(), numbers[f], &*recipe.fractions[f].clump);
+  clumps.resize(grains.size(), clumps.back());
+  return clumps;
+}
+
+Grains around_clumps(const std::vector<const Clump*>& clumps, const Grains& grains) {
+  Grains around = grains;
+  for (std::size_t k = 0; k < clumps.size(); ++k) around.radius[k] *= clumps[k]->outer_radius;
+  return around;
+}
+
+namespace {
+
+/// Every turn equally likely (Shoemake 1992, by points of a ball); in the plane every angle.
+Turn random_turn(int dimension, Uniform& uniform) {
+  if (dimension == 2) {
+    const auto [c, s] = direction_of(180 * (2 * uniform() - 1));  // of half the angle
+    return {c, {0, 0, s}};
+  }
+  while (true) {
+    double q[4], squared = 0;
+    for (double& value : q) {
+      value = 2 * uniform() - 1;
+      squared += value * value;
+    }
+    if (squared > 1 || squared < 1e-4) continue;
+    return normalised(Turn{q[0], {q[1], q[2], q[3]}});
+  }
+}
+
+}  // namespace
+
+void put_clumps(const std::vector<const Clump*>& clumps, const Grains& graded, const Grains& around, Uniform& uniform,
+                Specimen& specimen) {
+  specimen.grains = Grains{};
+  for (std::size_t k = 0; k < clumps.size(); ++k)
+    add_clump(specimen, *clumps[k], graded.radius[k], around.position[k],
+              random_turn(dimension_of(specimen.shape), uniform), graded.material[k]);
 }
 
 double solid_volume(const Recipe& recipe, const Grains& grains) {

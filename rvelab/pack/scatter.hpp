@@ -12,6 +12,14 @@ Grains graded_grains(const Recipe& recipe);
 /// Volume of all grains, m^3.
 double solid_volume(const Recipe& recipe, const Grains& grains);
 
+/// Of a recipe of clumps: the clump of each grain of graded_grains. Its radius is that of the volume.
+std::vector<const Clump*> clumps_of(const Recipe& recipe, const Grains& grains);
+/// Discs or spheres around them, to be scattered: radii of `grains` by their clumps.
+Grains around_clumps(const std::vector<const Clump*>& clumps, const Grains& grains);
+/// The clumps at the places of `around`, each turned at random, in place of the grains of a specimen.
+void put_clumps(const std::vector<const Clump*>& clumps, const Grains& graded, const Grains& around, Uniform& uniform,
+                Specimen& specimen);
+
 /// The recipe's cell with the given volume, m^3.
 Cell cell_of(const Recipe& recipe, double volume);
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rvelab/records/quantities.hpp"
+#include "rvelab/specimen/clumps.hpp"
 
 namespace rvelab::pool {
 
@@ -47,7 +48,11 @@ struct Read : records::MeasuredState {
   }
   /// What a network does not hold.
   const Grains& grains() const {
-    if (!grains_) grains_ = rve.specimen().grains;
+    if (grains_) return *grains_;
+    const Specimen specimen = rve.specimen();
+    std::vector<double> radii;
+    for (const GrainState& grain : network.grains) radii.push_back(grain.radius);
+    grains_ = specimen.bodies.empty() ? specimen.grains : bodies_as_grains(specimen, radii);
     return *grains_;
   }
 
@@ -143,6 +148,17 @@ void add_grains(std::vector<Array>& to) {
   to.push_back(of_grains("grains/mass_kg", "kg", "", [](const Read&, const GrainState& grain) { return grain.mass; }));
   to.push_back(of_grains("grains/moment_of_inertia_kg_m2", "kg m^2", "about its centre",
                          [](const Read&, const GrainState& grain) { return grain.inertia; }));
+  to.push_back(column(
+      "grains/inertia_tensor_kg_m2", "kg m^2", "of clumps: about its centre; not there of other grains",
+      RVELAB_OF_GRAINS, [](const Read& state) { return state.network.moments.size(); },
+      [](const Read& state, std::size_t k) -> Matrix3 {
+        const Matrix3& turn = state.network.cell.rotation;
+        return turn * state.network.moments[k] * turn.transpose();
+      }));
+  to.back().rows = [](const Rve& rve) {
+    const std::size_t bodies = rve.network().moments.size();
+    return bodies > 0 ? bodies : std::size_t(-1);  // -1: not there
+  };
   to.push_back(of_grains("grains/position_m", "m", "of its centre; its images stand lattice columns apart",
                          [](const Read& state, const GrainState& grain) { return state.turned(grain.position); }));
   to.push_back(of_grains("grains/orientation", "1", "along its long axis, of length 1",

@@ -12,6 +12,7 @@
 #include "rvelab/report/local_strain.hpp"
 #include "rvelab/report/packed.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/specimen/clumps.hpp"
 
 namespace rvelab::report {
 namespace {
@@ -142,7 +143,13 @@ Packed sizes_of(const State& state) {
 
 State state_of(long record, const Specimen& specimen) {
   Rve rve(specimen);
-  return {record, rve.specimen(), rve.network()};
+  State state{record, rve.specimen(), rve.network()};
+  if (state.network.has_bodies()) {  // the page shows them as round grains of the same volume
+    std::vector<double> radii;
+    for (const GrainState& grain : state.network.grains) radii.push_back(grain.radius);
+    state.specimen.grains = bodies_as_grains(state.specimen, radii);
+  }
+  return state;
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ double inertial_number(const State& state, const Matrix3& gradient, double dt, c
   double mass = 0, solid = 0;
   for (std::size_t g = 0; g < model.size(); ++g) {
     mass += model.mass[g];
-    solid += grain_volume(model.shape, model.radius[g], state.cell().lattice(2, 2));
+    solid += model.solid_of(g);
   }
   const double p = mean_pressure(stress, d), rate = std::sqrt(2 * e.squaredNorm()) / dt;
   if (p > 0) return rate * 2 * model.mean_radius * std::sqrt(mass / solid / p);
@@ -292,6 +292,10 @@ const InteractionSettings& Rve::interaction_settings() const { return state_->mo
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
   State& state = prepared_for_change(*state_);
+  if (state.model().bodies)
+    throw InputError(
+        "set_velocities: the grains are members of clumps; set the velocities and spins of the bodies of a specimen "
+        "instead (bodies/velocity, bodies/spin)");
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");

@@ -15,6 +15,7 @@
 #include "rvelab/contact/model.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/grains/own_columns.hpp"
+#include "rvelab/grains/rigid_motion.hpp"
 
 namespace rvelab::fields {
 
@@ -86,6 +87,23 @@ template <>
 struct Layout<Vector3> : RowOfThree<Vector3, double> {};
 template <>
 struct Layout<Image> : RowOfThree<Image, std::int32_t> {};
+
+/// Scalar part first.
+template <>
+struct Layout<Turn> {
+  using Scalar = double;
+  static constexpr std::array<std::uint64_t, 1> extents{4};
+  static constexpr std::size_t size = 4;
+  static constexpr bool in_order = false;
+  static void put(const Turn& value, double* row) {
+    row[0] = value.w;
+    std::copy_n(value.v.data(), 3, row + 1);
+  }
+  static void get(const double* row, Turn& value) {
+    value.w = row[0];
+    std::copy_n(row + 1, 3, value.v.data());
+  }
+};
 
 template <>
 struct Layout<Matrix3> {

@@ -8,6 +8,7 @@
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/contact/model.hpp"
 #include "rvelab/grains/own_columns.hpp"
+#include "rvelab/grains/rigid_motion.hpp"
 #include "rvelab/grains/shape.hpp"
 #include "rvelab/interaction/interaction.hpp"
 #include "rvelab/solver/assembly/list_state.hpp"
@@ -39,6 +40,25 @@ struct Contact {
   Vector3 tangential_force = Vector3::Zero();
   Vector3 rolling_moment = Vector3::Zero();  ///< N m
   double last_root_overlap = 0;              ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
+};
+
+/// A rigid body (clump): some grains that follow each other in Grains and move as one. Contacts are those of its
+/// members; mass and inertia are those of their union, of the material of its members. Vectors are in the cell frame.
+struct Body {
+  std::int64_t id = 0;
+  std::int32_t first = 0;  ///< row of its first member in Grains; its last stands before the next body's first
+  Vector3 position = Vector3::Zero();  ///< m, centre of gravity
+  Vector3 velocity = Vector3::Zero();  ///< as that of grains
+  Vector3 spin = Vector3::Zero();  ///< as that of grains; at a rate that of the angular momentum at the last half step
+  Turn orientation;                ///< principal axes to cell frame; in the plane about z
+  double volume = 0;               ///< m^3, of the union
+  Vector3 gyration = Vector3::Zero();  ///< m^2, principal moments of inertia over the mass, ascending; in the plane all
+                                       ///< three that about z
+};
+
+/// Where a grain stands in its body.
+struct BodyMember {
+  Vector3 offset = Vector3::Zero();  ///< m, from the centre of gravity along the principal axes
 };
 
 /// solver.skin at most: a wider list holds hundreds of pairs a grain and serves nothing.
@@ -83,6 +103,8 @@ struct Specimen : Interactions {
   Damping damping;
   SolverOptions solver;
   Grains grains;
+  std::vector<Body> bodies;         ///< empty: every grain moves by itself; else all grains are members
+  std::vector<BodyMember> members;  ///< one for each grain where there are bodies
   std::vector<Contact> contacts;
   SolverState state;
 };

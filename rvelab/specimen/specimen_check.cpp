@@ -150,6 +150,7 @@ class Relations {
     check_lists();
     check_grains();
     check_outlines();
+    check_bodies();
     check_cell();
     check_places();
     check_masses();
@@ -248,6 +249,54 @@ class Relations {
     if (!(std::abs(length - 1) <= 1e-9))
       refuse(of_grain("grains/orientation", k) + " has the length " + digits_of(length) +
              "; allowed: 1, a direction in the plane");
+  }
+
+  /// Bodies (clumps): each grain in one of them, of one material, where its offset says.
+  void check_bodies() const {
+    const std::size_t n = s.grains.size();
+    if (s.members.size() != (s.bodies.empty() ? 0 : n))
+      refuse("members has " + std::to_string(s.members.size()) +
+             " rows; allowed: one for each grain where there are bodies, else none");
+    if (s.bodies.empty()) return;
+    if (!is_round(s.shape)) refuse(std::string("bodies of ") + name(s.shape) + "s; allowed: of discs or spheres");
+    if (has_any(s))
+      advise(
+          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps yet; take "
+          "grains that move by themselves, or leave the interactions out");
+    if (s.contact.slip != Slip::consistent)
+      refuse(std::string("contact/slip = \"") + name(s.contact.slip) + "\" with bodies; allowed: \"consistent\"");
+    if (!s.state.memory_order.empty()) advise("state/memory_order with bodies; leave it empty");
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      const Body& body = s.bodies[b];
+      const auto first = std::size_t(body.first);
+      if (b > 0 && body.id <= s.bodies[b - 1].id)
+        advise(at("bodies/id", b) + " follows " + std::to_string(s.bodies[b - 1].id) +
+               "; ids must ascend, each once: sort the bodies by id, and the grains with them");
+      if (b == 0 ? first != 0 : (first <= std::size_t(s.bodies[b - 1].first) || first >= n))
+        refuse(at("bodies/first", b) + " = " + std::to_string(body.first) +
+               "; allowed: 0 for the first body, then ascending rows of grains");
+      const Turn& q = body.orientation;
+      const double length = std::sqrt(q.w * q.w + q.v.squaredNorm());
+      if (!(std::abs(length - 1) <= 1e-9) || (s.cell.dimension == 2 && (q.v[0] != 0 || q.v[1] != 0)))
+        refuse(at("bodies/orientation", b) + " has the length " + digits_of(length) +
+               "; allowed: a quaternion of length 1, scalar first, in 2D about z");
+      const std::size_t last = b + 1 < s.bodies.size() ? std::size_t(s.bodies[b + 1].first) : n;
+      for (std::size_t g = first; g < std::min(last, n); ++g) check_member(body, first, g);
+    }
+  }
+  void check_member(const Body& body, std::size_t first, std::size_t g) const {
+    if (s.grains.material[g] != s.grains.material[first])
+      refuse(of_grain("grains/material", g) + " differs from that of the first member of body " +
+             std::to_string(body.id) + "; allowed: one material in a body");
+    const Vector3 from = s.grains.position[g] - body.position - axes_of(body.orientation) * s.members[g].offset;
+    Vector3 periods = s.cell.lattice.triangularView<Eigen::Upper>().solve(from);
+    for (int k = 0; k < 3; ++k) periods[k] -= std::floor(periods[k] + 0.5);
+    if (s.cell.dimension == 2) periods[2] = 0;
+    const double off = (s.cell.lattice * periods).norm();
+    if (!(off <= 1e-6 * s.grains.radius[g]))
+      advise(of_grain("grains/position_m", g) + " is " + in_words(off) + " m from where members/offset_m[" +
+             std::to_string(g) + "] puts it in body " + std::to_string(body.id) +
+             "; give position = body position + axes offset, up to lattice vectors");
   }
 
   void check_cell() const {

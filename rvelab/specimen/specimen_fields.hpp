@@ -71,6 +71,25 @@ inline constexpr auto members_of<Contact> = std::tuple{
     Field{"last_root_overlap_m0_5", &Contact::last_root_overlap, "m^0.5"}.within(number_from_zero),
 };
 
+template <>
+inline constexpr auto members_of<Body> = std::tuple{
+    Field{"id", &Body::id, "1"},
+    Field{"first", &Body::first, "1"}.within(number_from_zero),
+    Field{"position_m", &Body::position, "m"}.lying(InPlane::along),
+    Field{"velocity", &Body::velocity, "m/s or m/step"}.lying(InPlane::along),
+    Field{"spin", &Body::spin, "rad/s or rad/step"}.lying(InPlane::normal),
+    Field{"orientation", &Body::orientation, "1"},
+    Field{"volume_m3", &Body::volume, "m^3"}.within(positive_number),
+    Field{"gyration_m2", &Body::gyration, "m^2"}.within(positive_number),
+};
+template <>
+inline constexpr auto members_of<BodyMember> =
+    std::tuple{Field{"offset_m", &BodyMember::offset, "m"}.lying(InPlane::along)};
+template <>
+inline constexpr bool left_out_where_empty<Body> = true;
+template <>
+inline constexpr bool left_out_where_empty<BodyMember> = true;
+
 /// The constants of one group, as its law file lists them.
 template <class Group>
 constexpr auto stored_fields() {
@@ -220,6 +239,8 @@ template <>
 inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"shape", &Specimen::shape, "-"},  //
                                                                        Part{"cell", &Specimen::cell},          //
                                                                        Part{"grains", &Specimen::grains},      //
+                                                                       Table{"bodies", &Specimen::bodies},     //
+                                                                       Table{"members", &Specimen::members},   //
                                                                        Table{"contacts", &Specimen::contacts}},
                                                             interaction_tables(InteractionLaws{}),
                                                             std::tuple{Table{"materials", &Specimen::materials},  //

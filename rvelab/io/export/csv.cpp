@@ -67,12 +67,19 @@ std::string size_of(const Specimen& specimen, std::size_t g) {
 template <class By>
 std::string particles_of(const Specimen& specimen) {
   const int dimension = specimen.cell.dimension;
-  std::string text = first_line + "id" + axes("", dimension) + size_names<By>() + ",material\n";
+  std::string text = first_line + "id" + axes("", dimension) + size_names<By>() + ",material" +
+                     (specimen.bodies.empty() ? "\n" : ",body\n");
   const Grains& grains = specimen.grains;
   for (std::size_t g = 0; g < grains.size(); ++g) {
     text += std::to_string(grains.id[g]);
     append(text, specimen.cell.rotation * grains.position[g], dimension);
-    text += size_of<By>(specimen, g) + "," + specimen.materials[std::size_t(grains.material[g])].name + "\n";
+    text += size_of<By>(specimen, g) + "," + specimen.materials[std::size_t(grains.material[g])].name;
+    if (!specimen.bodies.empty()) {
+      const auto next = std::upper_bound(specimen.bodies.begin(), specimen.bodies.end(), std::int32_t(g),
+                                         [](std::int32_t row, const Body& body) { return row < body.first; });
+      text += "," + std::to_string(std::prev(next)->id);
+    }
+    text += "\n";
   }
   return text;
 }
@@ -82,6 +89,19 @@ Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
   if (specimen.cell.dimension == 3) return contact.tangential_force;
   const Vector3 normal = normal_of(specimen, contact);
   return contact.tangential_force[0] * Vector3(-normal[1], normal[0], 0);
+}
+
+/// Two members of a body, as far from each other as they are fixed.
+bool are_of_one_body(const Specimen& specimen, const Contact& pair) {
+  if (specimen.bodies.empty()) return false;
+  const auto body_of = [&](std::int32_t g) {
+    return std::upper_bound(specimen.bodies.begin(), specimen.bodies.end(), g,
+                            [](std::int32_t row, const Body& body) { return row < body.first; });
+  };
+  if (body_of(pair.i) != body_of(pair.j)) return false;
+  const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
+  const double fixed = (specimen.members[j].offset - specimen.members[i].offset).norm();
+  return std::abs(branch_of(specimen, pair).norm() - fixed) < 1e-6 * specimen.grains.radius[i];
 }
 
 /// Contacts of a specimen, and the pairs that touch without a history: without friction, springs or slip that is all of
@@ -94,6 +114,7 @@ std::vector<Contact> touching_contacts(const Specimen& specimen) {
     const auto same = std::lower_bound(specimen.contacts.begin(), specimen.contacts.end(), pair,
                                        [&](const Contact& c, const ListedPair& p) { return key(c) < key(p); });
     const Contact bare{pair.i, pair.j, pair.image};
+    if (are_of_one_body(specimen, bare)) continue;
     const bool known = same != specimen.contacts.end() && key(*same) == key(pair);
     if (!known && overlap_of(specimen, bare) > 0) contacts.push_back(bare);
   }

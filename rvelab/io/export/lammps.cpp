@@ -33,8 +33,16 @@ void refuse_outlines(const ExportState& state) {
                      std::string(name(state.network.shape)) + "s; export it as xdmf");
 }
 
+void refuse_bodies(const ExportState& state) {
+  if (!state.network.has_bodies()) return;
+  throw InputError(
+      "the specimen has clumps, which files of LAMMPS do not hold here; allowed: specimens of discs or spheres; export "
+      "XDMF or CSV instead");
+}
+
 void append_dump(std::string& text, const ExportState& state) {
   refuse_outlines(state);
+  refuse_bodies(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const double xy = l(0, 1), xz = l(0, 2), yz = l(1, 2);
@@ -65,6 +73,7 @@ void export_lammps_dump(const std::vector<ExportState>& states, const std::strin
 
 void export_lammps_data(const ExportState& state, const std::string& path) {
   refuse_outlines(state);
+  refuse_bodies(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const Vector3 low = box.corner(), high = low + l.diagonal();

@@ -96,19 +96,25 @@ class Series {
     const Box box(network.cell.lattice);
     const double physical = network.loading == Loading::quasi_static ? 0 : 1;
     std::vector<double> points, radius, velocity, spin, stress;
-    for (const GrainState& grain : network.grains) {
+    for (const GrainState& grain : network.drawn()) {
       append(points, turn * box.wrapped(grain.position));
       radius.push_back(grain.radius);
       append(velocity, physical * (turn * grain.velocity));
       append(spin, physical * (turn * grain.spin));
     }
-    for (const Matrix3& sigma : grain_stresses(network)) {
+    // Of bodies (clumps) members are drawn, with what their body has.
+    const auto stresses = grain_stresses(network);
+    const auto counts = contact_counts(network);
+    std::vector<std::int32_t> contacts;
+    for (std::size_t g = 0; g < network.drawn().size(); ++g) {
+      const auto of = network.has_bodies() ? std::size_t(network.owner[g]) : g;
+      const Matrix3& sigma = stresses[of];
+      contacts.push_back(counts[of]);
       for (int k = 0; k < 9; ++k) stress.push_back(sigma(k / 3, k % 3));
     }
-    const auto counts = contact_counts(network);
     begin("grains",
           "<Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"" +
-              std::to_string(network.grains.size()) + "\"/>",
+              std::to_string(network.drawn().size()) + "\"/>",
           points);
     attribute("grains", "radius_m", "Node", radius, 1, "m");
     with_shape(network.shape, [&](auto is) {
@@ -119,7 +125,12 @@ class Series {
     attribute("grains", "fluctuation_velocity_m_s", "Node", velocity, 3, "m/s");
     attribute("grains", "fluctuation_spin_rad_s", "Node", spin, 3, "rad/s");
     attribute("grains", "stress_Pa", "Node", stress, 9, "Pa");
-    attribute("grains", "contacts", "Node", std::vector<std::int32_t>(counts.begin(), counts.end()), 1, "1");
+    attribute("grains", "contacts", "Node", contacts, 1, "1");
+    if (network.has_bodies()) {
+      std::vector<std::int64_t> bodies;
+      for (const std::int32_t owner : network.owner) bodies.push_back(state.specimen.bodies[std::size_t(owner)].id);
+      attribute("grains", "body", "Node", bodies, 1, "1");
+    }
     end();
   }
 

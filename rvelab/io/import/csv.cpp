@@ -61,6 +61,11 @@ std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Speci
 
 /// Material of each row: by name or number where the file has the column, else the only one.
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
+  if (table.has("body"))
+    throw InputError(
+        table.place(0) +
+        ": the column `body` is of clumps, which tables cannot bring back: their members would move apart; "
+        "allowed: a table of grains that move by themselves; keep clumps in HDF5 files");
   std::vector<std::int32_t> index(table.rows(), 0);
   if (!table.has("material")) {
     const bool several = specimen.materials.size() > 1;

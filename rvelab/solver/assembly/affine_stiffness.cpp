@@ -108,9 +108,31 @@ Matrix6 sum_over_round(const Model& model, const Assembly& assembly, const Of& c
   return stiffness;
 }
 
+/// The same of bodies, by the branch between their centres: along n and across it in space.
+template <Shape shape, class Of>
+Matrix6 sum_over_bodies(const Model& model, const Assembly& assembly, const Of& coefficients) {
+  Matrix6 sum = Matrix6::Zero();
+  each_touching<shape>(model, assembly, [&](std::size_t p, const auto& at) {
+    const auto [kn, kt] = coefficients(p, at);
+    const Vector3 n = Vector3(at.branch.x, at.branch.y, at.branch.z) / at.length;
+    const Vector3 b = Vector3(at.branch.x, at.branch.y, at.branch.z) +
+                      assembly.bodies.arm[std::size_t(assembly.pairs.i[p])] -
+                      assembly.bodies.arm[std::size_t(assembly.pairs.j[p])];
+    // Of e b = rows e: motion of the branch by the six strains.
+    Eigen::Matrix<double, 3, 6> motion;
+    for (int k = 0; k < 6; ++k) motion.col(k) = strain_matrix(Vector6::Unit(k)) * b;
+    if (dimension_of(shape) == 2)
+      for (const int k : {2, 3, 4}) motion.col(k).setZero();
+    const Eigen::Matrix<double, 1, 6> along = n.transpose() * motion;
+    sum += (kn - kt) * along.transpose() * along + kt * motion.transpose() * motion;
+  });
+  return sum;
+}
+
 template <class Of>
 Matrix6 affine_sum(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   const Matrix6 stiffness = with_shape(model.shape, [&](auto shape) -> Matrix6 {
+    if (model.bodies) return sum_over_bodies<shape.value>(model, assembly, coefficients);
     if constexpr (is_round(shape.value))
       return sum_over_round<shape.value>(model, assembly, coefficients, interactions);
     else

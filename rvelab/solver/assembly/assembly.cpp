@@ -87,7 +87,9 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
   std::vector<std::int32_t> order = specimen.state.memory_order;
-  if (order.empty() && n >= least_ordered_grains) order = space_filling_order(specimen.cell, specimen.grains.position);
+  // Members of a body follow each other.
+  if (order.empty() && n >= least_ordered_grains && specimen.bodies.empty())
+    order = space_filling_order(specimen.cell, specimen.grains.position);
   const Specimen arranged = order.empty() ? Specimen() : in_memory_order(specimen, order);
   const Specimen& s = order.empty() ? specimen : arranged;
   model.shape = s.shape;
@@ -114,18 +116,15 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.mean_radius = std::accumulate(model.radius.begin(), model.radius.end(), 0.0) / double(n);
   model.largest_skin = model.options.skin * model.mean_radius;
   model.min_height = model.options.min_height > 0 ? model.options.min_height : 2 * model.largest_reach;
-  std::vector<double> mass(n), inertia(n);
   assembly.cell = s.cell;
   assembly.state = s.state;
   assembly.state.memory_order = std::move(order);
+  open_bodies(s, model, assembly);
   if (!(assembly.state.list.skin > 0 && assembly.state.list.skin < model.largest_skin))
     assembly.state.list.skin = model.largest_skin;
   assembly.rows.assign(padded * model.row_length(), 0.0);
   for (Buffer* b : {&assembly.mass, &assembly.inverse_mass, &assembly.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
-    const Material& m = model.materials[model.material[g]];
-    mass[g] = m.density * model.volume_of(g);
-    inertia[g] = model.inertia_of(g, mass[g]);
     double* row = assembly.rows.data() + g * model.row_length();
     for (int k = 0; k < model.dimension(); ++k) row[k] = s.grains.position[g][k];
     if (!model.round()) {
@@ -135,8 +134,7 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
     complete_row(model, g, row);
     assembly.set_velocity(model, g, s.grains.velocity[g], s.grains.spin[g]);
   }
-  model.mass = std::move(mass);
-  model.inertia = std::move(inertia);
+  set_physical_masses(model);
   take_scaled_inertia(assembly);
 
   try {
@@ -179,6 +177,7 @@ Specimen close_assembly(const Model& model, const Assembly& assembly) {
                                                         : assembly.inverse_inertia[g]);
     }
   }
+  close_bodies(model, assembly, s);
   s.contacts = contacts_of(model, assembly.pairs);
   static_cast<Interactions&>(s) = interactions_of(assembly.pairs);
   copy_settings(model.interaction_settings, s);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <vector>
 
+#include "rvelab/solver/assembly/bodies.hpp"
 #include "rvelab/solver/assembly/buffer.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
@@ -27,10 +28,11 @@ struct Model {
   SharedArray<std::int64_t> id;
   SharedArray<std::int32_t> material;
   SharedArray<double> radius, mass, inertia;    ///< m, kg, kg m^2 (physical)
+  std::shared_ptr<const BodyModel> bodies;      ///< null: every grain moves by itself
   OwnColumns<SharedArray> own;                  ///< of the shape
   SharedArray<double> outer_radius;             ///< not round: of the circles around the grains, m
   SharedArray<double> turn_first, turn_second;  ///< not round: TurnValues for the grain loop, padded to lanes
-  double mean_radius = 0;                       ///< m
+  double mean_radius = 0;                       ///< m; of bodies where there are some
   double largest_reach = 0;                     ///< m, of the circles around the grains
   double largest_skin = 0;                      ///< m
   double min_height = 0;                        ///< m
@@ -70,6 +72,15 @@ struct Model {
   const std::vector<double>& reach() const { return round() ? radius : outer_radius; }
   Extent extent_of(std::size_t g) const { return rvelab::extent_of(shape, radius[g], own, g); }
   double volume_of(std::size_t g) const { return grain_volume(shape, radius[g], thickness); }
+  /// Of a member its share of the body: 1 and the radius of grains that move by themselves.
+  double share_of(std::size_t g) const { return bodies ? bodies->share[g] : 1; }
+  double size_of(std::size_t g) const { return bodies ? bodies->radius[std::size_t(bodies->owner[g])] : radius[g]; }
+  /// m^3, of a member its share.
+  double solid_of(std::size_t g) const {
+    return bodies ? bodies->share[g] * bodies->volume[std::size_t(bodies->owner[g])] : volume_of(g);
+  }
+  /// kg, that a contact of the grain moves.
+  double moved_mass(std::size_t g) const { return bodies ? bodies->mass[std::size_t(bodies->owner[g])] : mass[g]; }
   double inertia_of(std::size_t g, double of_mass) const {
     return moment_of_inertia(shape, of_mass, radius[g], own_of(shape, own, g));
   }
@@ -150,6 +161,7 @@ struct Assembly {
   Buffer rows;                                 ///< padded grain rows (kernels/configuration.hpp)
   Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled in quasi-static loading
   PairTable pairs;
+  BodyMotions bodies;  ///< empty without
   SolverState state;
   TrialLink trial;
 

@@ -185,21 +185,24 @@ template <Shape shape, class Force>
 double constraints_over_motions(const Model& model, const Assembly& assembly) {
   const PairPlaces<shape> pair(model, assembly);
   const int d = model.dimension(), turns = d == 2 ? 1 : 3;
-  std::vector<int> contacts(model.size(), 0);
+  const auto owner = [&](std::int32_t g) {
+    return std::size_t(model.bodies ? model.bodies->owner[std::size_t(g)] : g);
+  };
+  std::vector<int> contacts(model.bodies ? model.bodies->size() : model.size(), 0);
   std::vector<std::int32_t> touching;
   touching.reserve(assembly.pairs.order.size());
   for (const std::int32_t place : assembly.pairs.order) {
     const auto p = std::size_t(place);
     if (pair.is_apart(p) || !(pair(p).overlap > 0)) continue;
     touching.push_back(place);
-    ++contacts[std::size_t(assembly.pairs.i[p])];
-    ++contacts[std::size_t(assembly.pairs.j[p])];
+    ++contacts[owner(assembly.pairs.i[p])];
+    ++contacts[owner(assembly.pairs.j[p])];
   }
   double constraints = 0, grip = 0, friction = 0, held = grip_of(friction);
   long counted = 0;
   for (const std::int32_t place : touching) {
     const auto p = std::size_t(place);
-    if (contacts[std::size_t(assembly.pairs.i[p])] < 2 || contacts[std::size_t(assembly.pairs.j[p])] < 2) continue;
+    if (contacts[owner(assembly.pairs.i[p])] < 2 || contacts[owner(assembly.pairs.j[p])] < 2) continue;
     const Held by = held_by<shape, Force>(model, assembly.pairs, p, pair(p));
     if (assembly.pairs.friction[p] != friction) {
       friction = assembly.pairs.friction[p];
@@ -211,7 +214,7 @@ double constraints_over_motions(const Model& model, const Assembly& assembly) {
   }
   if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
-  const double turning = model.round() ? grip / double(counted) : 1;
+  const double turning = model.round() && !model.bodies ? grip / double(counted) : 1;
   const auto grains = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
   return constraints / (double(grains) * (d + turns * turning));
 }
@@ -242,6 +245,10 @@ Network network_of(const Model& model, const Assembly& assembly) {
     static_cast<OwnValues&>(grain) = own_of(model.shape, model.own, g);
   }
   with_shape(model.shape, [&](auto shape) { add_contacts<shape.value>(model, assembly, net); });
+  if (model.bodies) {
+    join_members(model, assembly, net);
+    return net;
+  }
   add_interactions(model, assembly, net);
   return in_id_order(std::move(net), assembly.state.memory_order);
 }

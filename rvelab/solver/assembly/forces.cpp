@@ -208,7 +208,7 @@ template <Shape shape>
 OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
   constexpr int D = dimension_of(shape);
   const PairPlaces<shape> pair(model, assembly);
-  const bool shared = model.sharing() != nullptr;
+  const bool shared = model.sharing() != nullptr || model.bodies != nullptr;
   std::vector<double> resultants(resultant_row<D> * model.size(), 0.0);
   const auto [forces_between, acting] = add_interactions<D>(model, assembly, resultants.data());
   std::vector<ContactSums> of_pairs(pieces_in(assembly.pairs.listed));
@@ -217,7 +217,7 @@ OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
   });
   std::vector<GrainFigures> of_grains(pieces_in(model.size()));
   in_pieces(model.size(), model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    if (shared) gather_resultants<shape>(model, assembly, pair, first, last, resultants.data());
+    if (shared && !model.bodies) gather_resultants<shape>(model, assembly, pair, first, last, resultants.data());
     of_grains[piece] = grains_in<D>(model, assembly, first, last, resultants.data());
   });
   OutOfBalance balance;
@@ -233,6 +233,14 @@ OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
     balance.mean_resultant += piece.resultants;
     balance.mean_couple += piece.couples;
     squares += piece.squares;
+  }
+  if (model.bodies) {
+    std::vector<Resultant> on_bodies;
+    gather_on_bodies(model, assembly, on_bodies);
+    for (std::size_t b = 0; b < on_bodies.size(); ++b) {
+      balance.mean_resultant += on_bodies[b].force.norm() / double(on_bodies.size());
+      balance.mean_couple += on_bodies[b].torque.norm() / (model.bodies->radius[b] * double(on_bodies.size()));
+    }
   }
   contact_force += forces_between;
   if (balance.touching > 0 || acting > 0)
@@ -271,6 +279,7 @@ std::vector<Resultant> resultants_in(const Model& model, const Assembly& assembl
 }  // namespace
 
 Matrix3 contact_virial(const Model& model, const Assembly& assembly) {
+  if (model.bodies) return virial_of_bodies(model, assembly);
   // Called every few sub-steps under stress control.
   return with_shape(model.shape, [&](auto shape) { return moment_in<shape.value>(model, assembly); });
 }

@@ -182,6 +182,7 @@ std::vector<ListedPair> near_pairs(const Model& model, const Assembly& assembly,
   std::vector<ListedPair> pairs =
       list_pairs(assembly.cell, assembly.rows.data(), model.row_length(), model.reach(), skin, model.sharing());
   keep_near_outlines(model, assembly, skin, pairs);
+  leave_out_inner_pairs(model, assembly, pairs);
   return pairs;
 }
 
@@ -250,8 +251,10 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
       }
     }
     follow_reduction(reduction, model.dimension(), interactions);
+    reduce_bodies(reduction, model, assembly);
   }
   check_height(model, assembly.cell);
+  wrap_bodies(model, assembly);
   std::vector<Image> moved(model.size(), Image{});
   const Vector3 half = 0.5 * assembly.cell.lattice.diagonal();
   in_pieces(model.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
@@ -271,6 +274,7 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
   }
   sort_by_key(carried);
   follow_wrapping(moved, model.dimension(), interactions);
+  follow_wrapping(moved, assembly);
   fill(model, assembly.state.list.skin, carried, interactions, Lost::dropped, assembly);
   assembly.state.list.built = true;
   assembly.state.list.lattice = assembly.cell.lattice;

@@ -26,6 +26,10 @@ struct ContactState {
   double friction = 0;              ///< mu
   double moment_cap = 0;            ///< |M| <= moment_cap pressing_force, m
   double elastic_energy = 0;        ///< J, normal + tangential + rolling
+  // Of bodies (clumps), whose numbers i and j are; branch, arms and image are those from centre to centre of gravity.
+  std::int32_t member_i = -1, member_j = -1;                       ///< the members that touch; -1 without bodies
+  Vector3 member_branch = Vector3::Zero();                         ///< m, from member to member
+  Vector3 offset_i = Vector3::Zero(), offset_j = Vector3::Zero();  ///< m, from the bodies' centres to the members'
   Vector3 force() const { return normal_force * normal + tangential_force; }  ///< on j, N
 };
 
@@ -49,8 +53,11 @@ struct Network {
   Shape shape = round_shape(3);
   Cell cell;
   ContactModel model;
-  std::vector<GrainState> grains;
-  std::vector<ContactState> contacts;          ///< ordered by (i, j, image)
+  std::vector<GrainState> grains;      ///< where there are bodies (clumps), those: round ones of the same volume
+  std::vector<GrainState> members;     ///< then: the grains that they are made of
+  std::vector<std::int32_t> owner;     ///< by member
+  std::vector<Matrix3> moments;        ///< by body: tensor of inertia, kg m^2, cell frame
+  std::vector<ContactState> contacts;  ///< ordered by (i, j, image)
   std::vector<InteractionState> interactions;  ///< kind by kind, each ordered by (i, j, image)
   double reference_contact_force = 0;          ///< N, floor of the unbalanced ratio is 1e-3 of it
   double reference_pressure = 0;               ///< Pa
@@ -58,6 +65,9 @@ struct Network {
                                                ///< grain's whole spin is this and its fluctuation
   Loading loading = Loading::quasi_static;     ///< quasi-static velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
+  bool has_bodies() const { return !members.empty(); }
+  /// What is drawn: discs, spheres, ellipses.
+  const std::vector<GrainState>& drawn() const { return has_bodies() ? members : grains; }
 };
 
 }  // namespace rvelab

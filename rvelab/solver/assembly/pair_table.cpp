@@ -35,7 +35,7 @@ void set_pair_parameters(const Model& model, PairTable& pairs) {
     const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
     const PairParameters q =
         mix(model.contact, model.damping, model.materials[std::size_t(model.material[i])], model.radius[i],
-            model.mass[i], model.materials[std::size_t(model.material[j])], model.radius[j], model.mass[j],
+            model.moved_mass(i), model.materials[std::size_t(model.material[j])], model.radius[j], model.moved_mass(j),
             grain_section(model.shape, std::min(model.radius[i], model.radius[j]), model.thickness));
     pairs.kn[p] = q.kn;
     pairs.kt[p] = q.kt;

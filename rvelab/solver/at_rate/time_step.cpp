@@ -114,7 +114,9 @@ void expect_stable(State& state, double step) {
   RowSums springs = state.row_sums();
   springs.dashpot.clear();
   if (step <= critical_step(state.model(), springs)) return;
-  const double limit = 2 / frequency_reached(state.model(), state.assembly());
+  // Of bodies the bound alone.
+  const double limit = state.model().bodies ? critical_step(state.model(), springs)
+                                            : 2 / frequency_reached(state.model(), state.assembly());
   if (step <= limit) return;
   throw IncrementFailed("solver.fixed_time_step_s = " + in_words(state.model().options.fixed_time_step) +
                         " s is above the critical step, " + in_words(limit) +

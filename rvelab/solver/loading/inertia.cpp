@@ -233,6 +233,43 @@ void add_interactions(const Model& model, const Assembly& assembly, std::vector<
   }
 }
 
+/// Sums of bodies (clumps): a contact moves the body at its arm a, u + w x a. Its normal spring turns the body too, at
+/// the lever |a x n|, as it does grains that are not round.
+template <Shape shape, class Force>
+std::vector<GrainSums<dimension_of(shape)>> sums_of_bodies(const Model& model, const Assembly& assembly) {
+  constexpr int D = dimension_of(shape);
+  const BodyModel& bodies = *model.bodies;
+  std::vector<GrainSums<D>> sums(bodies.size());
+  if constexpr (is_round(shape)) {
+    const TermsOfPairs<shape, Force> terms_of(model, assembly);
+    for (const std::int32_t place : assembly.pairs.order) {
+      const auto p = std::size_t(place);
+      const PairTerms<D> t = terms_of(p);
+      for (const bool as_j : {false, true}) {
+        const auto g = std::size_t(as_j ? assembly.pairs.j[p] : assembly.pairs.i[p]);
+        const auto b = std::size_t(bodies.owner[g]);
+        GrainSums<D>& of = sums[b];
+        const Vector3& arm = assembly.bodies.arm[g];
+        const double r = bodies.radius[b], far = arm.norm(), farthest = far + model.radius[g];
+        of.stiffest = std::max(of.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, far, r));
+        of.stiffest_turn = std::max(of.stiffest_turn, 4 * t.firm.tangential * farthest * farthest + 2 * t.firm.rolling +
+                                                          normal_to_rotation(t.firm.normal, far, r));
+        if (!t.touching) continue;
+        const Vector3 n(t.nx, t.ny, t.nz);
+        const double reach = (as_j ? -1 : 1) * model.radius[g];  // as of grains that move by themselves
+        const double squared = arm.squaredNorm() + 2 * reach * arm.dot(n) + reach * reach;
+        const double along_n = arm.dot(n), turn = std::sqrt(std::max(0.0, arm.squaredNorm() - along_n * along_n));
+        add_to<D>(of.stiffness, stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across,
+                                                   t.nx, t.ny, t.nz));
+        of.rotation += 4 * t.now.tangential * squared + 2 * t.now.rolling + normal_to_rotation(t.now.normal, turn, r);
+        if (model.damping.dashpot != Dashpot::none)
+          of.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * model.damping.tangential_ratio);
+      }
+    }
+  }
+  return sums;
+}
+
 /// Stiffnesses of the contacts, of which floors are medians.
 struct Firmness {
   std::vector<double> translation, rotation;
@@ -315,6 +352,16 @@ RowSums sums_over_pairs(const Model& model, const Assembly& assembly) {
       if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
     }
   });
+  if (model.bodies) {
+    const std::vector<GrainSums<D>> of_bodies = sums_of_bodies<shape, Force>(model, assembly);
+    for (std::size_t g = 0; g < n; ++g) {
+      const GrainSums<D>& of = of_bodies[std::size_t(model.bodies->owner[g])];
+      const double share = model.share_of(g);
+      sums.translation[g] = share * std::max(largest_eigenvalue(of.stiffness), of.stiffest);
+      sums.rotation[g] = std::max(of.rotation, of.stiffest_turn);
+      if (dashpot) sums.dashpot[g] = share * of.dashpot;
+    }
+  }
   if (firmness.translation.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
     const auto [k, radius] = typical_contact(model);
@@ -354,8 +401,9 @@ double critical_step(const Model& model, const RowSums& sums) {
     if (!(omega > 0)) continue;
     double step = 2 / omega;
     if (!sums.dashpot.empty()) {
+      const double lever = model.bodies ? model.bodies->lever[std::size_t(model.bodies->owner[g])] : model.reach()[g];
       const double rate = std::max(sums.dashpot[g] / model.mass[g],
-                                   sums.dashpot[g] * model.reach()[g] * model.reach()[g] / model.inertia[g]);
+                                   sums.dashpot[g] / model.share_of(g) * lever * lever / model.inertia[g]);
       const double zeta = rate / (2 * omega);
       step *= std::sqrt(1 + zeta * zeta) - zeta;
     }
@@ -366,8 +414,8 @@ double critical_step(const Model& model, const RowSums& sums) {
 
 RowSums with_floor(RowSums sums, const Model& model) {
   for (std::size_t g = 0; g < model.size(); ++g) {
-    sums.translation[g] = std::max(sums.translation[g], sums.floor_translation);
-    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * model.radius[g] * model.radius[g]);
+    sums.translation[g] = std::max(sums.translation[g], model.share_of(g) * sums.floor_translation);
+    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * model.size_of(g) * model.size_of(g));
   }
   return sums;
 }
@@ -392,8 +440,8 @@ void scale_inertia(const Model& model, const RowSums& sums, Assembly& assembly) 
   keep_masses(assembly);
   const double factor = model.options.time_step_factor;
   for (std::size_t g = 0; g < model.size(); ++g) {
-    assembly.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
-    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * model.radius[g] * model.radius[g], factor);
+    assembly.mass[g] = scaled(sums.translation[g], model.share_of(g) * sums.floor_translation, factor);
+    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * model.size_of(g) * model.size_of(g), factor);
     assembly.inverse_mass[g] = 1 / assembly.mass[g];
     assembly.inverse_inertia[g] = 1 / inertia;
   }
@@ -401,6 +449,11 @@ void scale_inertia(const Model& model, const RowSums& sums, Assembly& assembly) 
 
 double least_stiffness(const Model& model, const Assembly& assembly) {
   const double factor = model.options.time_step_factor;
+  if (model.bodies) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t g = 0; g < model.size(); ++g) least = std::min(least, assembly.mass[g] / model.share_of(g));
+    return 4 * factor * factor * least;
+  }
   return 4 * factor * factor *
          *std::min_element(assembly.mass.begin(), assembly.mass.begin() + std::ptrdiff_t(model.size()));
 }

@@ -10,6 +10,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/interactions.hpp"
+#include "rvelab/solver/loading/body_motion.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
@@ -123,6 +124,11 @@ void shift_half_step(const Model& model, Assembly& assembly, double step) {
   if (model.options.fixed_time_step > 0 || !(assembly.state.last_step.length > 0) ||
       std::abs(shift) < 0.005 * assembly.state.last_step.length)
     return;
+  if (model.bodies) {
+    shift_bodies(model, shift, assembly);
+    assembly.state.last_step.length = step;
+    return;
+  }
   const std::vector<Resultant> resultants = resultants_of(model, assembly);
   for (std::size_t g = 0; g < model.size(); ++g)
     assembly.set_velocity(model, g,
@@ -156,6 +162,7 @@ class SubSteps {
   /// Cell and constants of the next sub-step.
   void move_cell();
   void move_grains();
+  void move_bodies_of_step();
   void take_list();
   /// Lists the pairs anew; where the lattice is reduced, what is held in its frame turns with it.
   void list_pairs_anew();
@@ -185,6 +192,8 @@ class SubSteps {
   const bool in_one_sweep_;
   WaitingPairs waiting_;
   Matrix3 rate_end_, rate_mid_, moment_before_ = Matrix3::Zero();
+  Matrix3 lattice_before_ = Matrix3::Identity();  ///< of the step; bodies alone
+  Vector3 mean_spin_before_ = Vector3::Zero();
   StepClock clock_;
 };
 
@@ -208,7 +217,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
       step_(what.step),
       check_every_(what.check_every),
       in_one_sweep_(model_.size() >= least_grains_in_one_sweep && !model_.options.energy_balance &&
-                    !has_interactions(assembly_) && (team_ == nullptr || team_->count() == 1)),
+                    !has_interactions(assembly_) && !model_.bodies && (team_ == nullptr || team_->count() == 1)),
       clock_(model_.times) {
   c_.losses = model_.options.energy_balance;
   c_.local_damping = at_rate_ ? model_.damping.local : what.damping * model_.damping.local_quasi_static;
@@ -226,7 +235,9 @@ void SubSteps::move_cell() {
   assembly_.cell.lattice = path_.lattice_after(++path_.done);
   set_step(before, assembly_.cell.lattice, step_, c_, rate_end_, rate_mid_);
   for (int k = 0; k < 3; ++k) c_.mean_velocity[k] = assembly_.state.last_step.mean_velocity[k];
+  lattice_before_ = before;
   if (!at_rate_) return;
+  mean_spin_before_ = assembly_.state.last_step.mean_spin;
   const Vector3 mean_spin = axial(rate_mid_) + omega_;
   set_frame_terms(rate_mid_, omega_, mean_spin - assembly_.state.last_step.mean_spin, c_);
   assembly_.state.last_step.mean_spin = mean_spin;
@@ -234,7 +245,9 @@ void SubSteps::move_cell() {
 
 void SubSteps::move_grains() {
   clock_.begin_grains();
-  if (waiting_.any())
+  if (model_.bodies)
+    move_bodies_of_step();
+  else if (waiting_.any())
     waiting_.sweep_with_grains(move_, c_, grains_, pairs_, long(assembly_.mass.size()), sums_);
   else
     sweep_grains(move_, c_, grains_, pairs_, long(assembly_.mass.size()), team_, sums_);
@@ -245,6 +258,17 @@ void SubSteps::move_grains() {
   ++assembly_.state.list.steps;
   assembly_.state.last_step.rate = rate_end_;
   assembly_.state.last_step.length = step_;
+}
+
+void SubSteps::move_bodies_of_step() {
+  BodyStep step{c_, at_rate_, damping_kind(model_.damping, at_rate_ ? Loading::at_rate : Loading::quasi_static)};
+  const Matrix3& after = assembly_.cell.lattice;
+  const Matrix3 middle = 0.5 * (lattice_before_ + after);
+  step.inverse_stretch = lattice_before_ * upper_inverse(middle);
+  step.gradient = step.inverse_stretch * ((after - lattice_before_) / step_) * upper_inverse(lattice_before_);
+  step.mean_spin_before = mean_spin_before_;
+  step.mean_spin = assembly_.state.last_step.mean_spin;
+  move_bodies(model_, step, assembly_, sums_);
 }
 
 void SubSteps::take_list() {

@@ -1,10 +1,12 @@
 #include "rvelab/solver/loading/velocities.hpp"
 
+#include "rvelab/solver/loading/body_motion.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 
 namespace rvelab {
 
 Matrix3 reynolds_stress_times_volume(const Model& model, const Assembly& assembly) {
+  if (model.bodies) return reynolds_of_bodies(model, assembly);
   // Called every few sub-steps under stress control.
   const Vector3 mean = assembly.state.last_step.mean_velocity;
   std::vector<Matrix3> of_piece(pieces_in(model.size()));
@@ -30,6 +32,7 @@ Matrix3 reynolds_stress_times_volume(const Model& model, const Assembly& assembl
 }
 
 double kinetic_energy(const Model& model, const Assembly& assembly) {
+  if (model.bodies) return kinetic_energy_of_bodies(model, assembly);
   double sum = 0;
   for (std::size_t g = 0; g < model.size(); ++g) {
     sum += 0.5 * assembly.velocity(model, g).squaredNorm() * assembly.mass[g];
@@ -43,6 +46,7 @@ namespace {
 
 void zero_velocities(const Model& model, Assembly& assembly) {
   for (std::size_t g = 0; g < model.size(); ++g) assembly.set_velocity(model, g, Vector3::Zero(), Vector3::Zero());
+  stop_bodies(assembly);
   assembly.state.last_step.mean_velocity.setZero();
 }
 

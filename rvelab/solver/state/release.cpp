@@ -74,7 +74,8 @@ void rebuild_buffers(const Model& model, Assembly& assembly) {
 Memory memory_of(const Assembly& assembly) {
   const PairTable& t = assembly.pairs;
   Memory m;
-  m.state = bytes_of(assembly.rows) + bytes_of(t.root_overlap) + bytes_of(assembly.state.memory_order);
+  m.state += bytes_of(assembly.bodies);
+  m.state += bytes_of(assembly.rows) + bytes_of(t.root_overlap) + bytes_of(assembly.state.memory_order);
   for (int k = 0; k < 3; ++k) m.state += bytes_of(t.tangential[k]) + bytes_of(t.moment[k]);
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
            bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(assembly.state.list.positions);

@@ -32,6 +32,7 @@ void SharedStart::keep(const Assembly& assembly, const Matrix3& committed_lattic
     relaxed_start_ = std::move(relaxed_start);
     cell_ = assembly.cell;
     rows_ = assembly.rows;
+    bodies_ = assembly.bodies;
     state_ = assembly.state;
     own_list_ = replaced->list_taken;
     if (own_list_) {
@@ -69,6 +70,7 @@ void SharedStart::take_over(Assembly& assembly) const {
   }
   assembly.cell = cell_;
   assembly.rows = rows_;
+  assembly.bodies = bodies_;
   std::swap(assembly.state, state);
   if (own_list_) {
     std::swap(assembly.pairs, replaced.list);
@@ -89,7 +91,7 @@ void SharedStart::take_over(Assembly& assembly) const {
 }
 
 std::size_t SharedStart::bytes() const {
-  std::size_t sum = bytes_of(list_) + touched_.capacity() + state_.list.positions.capacity() * sizeof(Vector3) +
+  std::size_t sum = bytes_of(list_) + bytes_of(bodies_) + touched_.capacity() + state_.list.positions.capacity() * sizeof(Vector3) +
                     state_.memory_order.capacity() * sizeof(std::int32_t);
   for (const Buffer* b : {&rows_, &mass_, &inverse_mass_, &inverse_inertia_}) sum += b->capacity() * sizeof(double);
   for (const Buffer& b : changed_) sum += b.capacity() * sizeof(double);

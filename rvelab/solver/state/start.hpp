@@ -51,6 +51,7 @@ class SharedStart {
   RelaxedStart relaxed_start_;
   Cell cell_;
   Buffer rows_, mass_, inverse_mass_, inverse_inertia_;
+  BodyMotions bodies_;
   PairTable list_;               ///< where it was made anew, else empty
   std::vector<Buffer> changed_;  ///< of the committed list: what sub-steps change
   std::vector<std::uint8_t> touched_;

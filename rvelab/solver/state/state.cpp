@@ -157,14 +157,7 @@ void State::set_strained_cell() {
 void State::set_materials(const std::vector<Material>& materials) {
   Assembly& assembly = change();
   model_.materials = materials;
-  std::vector<double> mass(model_.size()), inertia(model_.size());
-  for (std::size_t g = 0; g < model_.size(); ++g) {
-    const double density = materials[std::size_t(model_.material[g])].density;
-    mass[g] = density * model_.volume_of(g);
-    inertia[g] = model_.inertia_of(g, mass[g]);
-  }
-  model_.mass = std::move(mass);
-  model_.inertia = std::move(inertia);
+  set_physical_masses(model_);
   const Buffer before = assembly.pairs.kt;
   set_pair_parameters(model_, assembly.pairs);
   let_go_of_springs(model_, before, assembly);

@@ -14,6 +14,7 @@ void Trial::begin(Assembly& assembly, Changes changes) {
     return;
   }
   rows_ = assembly.rows;
+  bodies_ = assembly.bodies;
   for (int k = 0; k < 3; ++k) {
     tangential_[k] = assembly.pairs.tangential[k];
     moment_[k] = assembly.pairs.moment[k];
@@ -53,6 +54,7 @@ void Trial::exchange(Assembly& assembly) noexcept {
     return;
   }
   assembly.rows.swap(rows_);
+  std::swap(assembly.bodies, bodies_);
   std::swap(assembly.state, state_);
   std::swap(assembly.state.list.positions, state_.list.positions);
   if (replaced_.masses_taken) {
@@ -87,6 +89,7 @@ std::size_t Trial::bytes() const {
     sum += b->capacity() * sizeof(double);
   for (const std::vector<Buffer>& columns : interactions_)
     for (const Buffer& b : columns) sum += b.capacity() * sizeof(double);
+  sum += bytes_of(bodies_);
   return sum + (state_.list.positions.capacity() + replaced_.list_positions.capacity()) * sizeof(Vector3) +
          state_.memory_order.capacity() * sizeof(std::int32_t);
 }

@@ -45,6 +45,7 @@ class Trial {
   Cell cell_;
   Matrix3 deferred_stretch_ = Matrix3::Identity();
   Buffer rows_;
+  BodyMotions bodies_;
   Buffer tangential_[3], moment_[3], root_overlap_;
   std::vector<std::vector<Buffer>> interactions_;  ///< columns, by table
   SolverState state_;  ///< without the positions of the list, while `replaced_` has not taken them

@@ -1,0 +1,80 @@
+// Motion of a rigid body of full inertia: orientation by a unit quaternion, angular momentum in the frame of its
+// principal axes. Only + - x / and square roots, so that the bits are the same everywhere.
+//
+// Free motion, dL/dt = L x w with w = L/I in the body frame, goes by the midpoint rule: L1 - L0 = t Lm x wm with
+// Lm = (L0 + L1)/2, and the body turns by the Cayley rotation of t wm. Both |L|^2 and the energy L.w/2 are quadratic,
+// so the rule keeps them to round-off (Cooper 1987), and with this rotation the momentum in space too. It is of second
+// order and reversible. A sub-step turns a grain by little, and two or three iterations are enough.
+//
+// Beside it the splitting into turns about the three principal axes was tried (Dullweber, Leimkuhler and McLachlan
+// 1997; NO_SQUISH of Miller et al. 2002), explicit and symplectic. Tops of moments 1 2 3, 1 1.05 4, 0.2 0.9 1 of
+// tests/data/grains/top.csv, 1e6 steps of a hundredth of the period:
+//
+//   |                                      | midpoint                | splitting
+//   | largest change of the energy         | 2e-13, 1e-12, 4e-13     | 2e-5, 2e-4, 2e-5 (an oscillation)
+//   | its trend over the run               | 2e-13, 1e-12, 5e-13     | 5e-10, 5e-9, 2e-10
+//   | error of w after one period          | 8e-4, 1.4e-3, 1.5e-3    | 1.9e-3, 1.6e-3, 4.2e-3
+//   | time                                 | 1.6 (these long steps)  | 1
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace rvelab {
+
+/// Unit quaternion, body frame to cell frame; scalar part first, as in a file.
+struct Turn {
+  double w = 1;
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();
+};
+
+/// First b, then a.
+inline Turn after(const Turn& a, const Turn& b) {
+  return {a.w * b.w - a.v.dot(b.v), a.w * b.v + b.w * a.v + a.v.cross(b.v)};
+}
+inline Turn normalised(const Turn& q) {
+  const double scale = 1 / std::sqrt(q.w * q.w + q.v.squaredNorm());
+  return {scale * q.w, scale * q.v};
+}
+inline Turn inverse(const Turn& q) { return {q.w, -q.v}; }
+
+/// The rotation R with R a - a = t x (R a + a)/2 for any a: by 2 atan(|t|/2) about t.
+inline Turn cayley_turn(const Eigen::Vector3d& t) { return normalised(Turn{1, 0.5 * t}); }
+/// The way back: t of a turn by less than pi.
+inline Eigen::Vector3d cayley_vector(const Turn& q) { return (2 / q.w) * q.v; }
+
+/// The principal axes as columns.
+inline Eigen::Matrix3d axes_of(const Turn& q) {
+  const double x = q.v[0], y = q.v[1], z = q.v[2], w = q.w;
+  Eigen::Matrix3d m;
+  m << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
+      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
+      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  return m;
+}
+/// Of a proper rotation.
+inline Turn turn_of(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q(rotation);
+  return normalised(Turn{q.w(), q.vec()});
+}
+
+/// Free rotation for a time t (s): momentum (kg m^2/s) in the body frame, `moments` about the principal axes (kg m^2).
+/// Returns t wm, the Cayley vector of the turn (axes of the body).
+inline Eigen::Vector3d rotate_freely(double t, const Eigen::Vector3d& moments, Eigen::Vector3d& momentum, Turn& q) {
+  constexpr int most_iterations = 60;  // of steps beyond all use; they end at the last bit long before
+  const Eigen::Vector3d inverse = moments.cwiseInverse();
+  Eigen::Vector3d middle = momentum;
+  for (int k = 0; k < most_iterations; ++k) {
+    const Eigen::Vector3d next = momentum + (0.5 * t) * middle.cross(middle.cwiseProduct(inverse));
+    const bool settled = (next - middle).squaredNorm() <= 1e-32 * next.squaredNorm();
+    middle = next;
+    if (settled) break;
+  }
+  const Eigen::Vector3d turned = t * middle.cwiseProduct(inverse);
+  momentum = 2 * middle - momentum;
+  q = normalised(after(q, cayley_turn(turned)));
+  return turned;
+}
+
+}  // namespace rvelab
