@@ -10,6 +10,7 @@
 #include <string>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/cell/cube_root.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {
@@ -20,22 +21,6 @@ void check_positive(const char* name, const char* unit, double value) {
   char found[64];
   std::snprintf(found, sizeof found, " = %.9g %s", value, unit);
   throw InputError(std::string(name) + found + "; it must be finite and > 0: correct the specimen's size");
-}
-
-// Cube root by Newton's method: the same bits on every machine, which the library's does not promise.
-double cube_root(double value) {
-  double scale = 1.0;
-  while (value >= 8.0) {
-    value /= 8.0;
-    scale *= 2.0;
-  }
-  while (value < 1.0) {
-    value *= 8.0;
-    scale /= 2.0;
-  }
-  double root = 1.5;
-  for (int k = 0; k < 8; ++k) root = (2.0 * root + value / (root * root)) / 3.0;
-  return scale * root;
 }
 
 }  // namespace

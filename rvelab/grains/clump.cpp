@@ -8,6 +8,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "rvelab/cell/cube_root.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {
@@ -53,16 +54,6 @@ Matrix3d principal_axes(Matrix3d inertia, int dimension) {
   }
   if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
   return axes;
-}
-
-double cube_root(double x) {
-  double root = 1;
-  for (int k = 0; k < 200; ++k) {
-    const double next = (2 * root + x / (root * root)) / 3;
-    if (next == root) break;
-    root = next;
-  }
-  return root;
 }
 
 }  // namespace

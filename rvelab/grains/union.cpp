@@ -35,7 +35,7 @@ struct Disc2 {
 };
 
 /// Integrals of 1, x, y, x^2, y^2, xy.
-using Moments = Eigen::Matrix<double, 6, 1>;
+using AreaMoments = Eigen::Matrix<double, 6, 1>;
 
 /// Ascends with the angle of a direction, 0 to 4.
 double turn_in_order(const Vector2d& d) { return d.y() >= 0 ? 1 - d.x() : 3 + d.x(); }
@@ -54,7 +54,7 @@ Vector2d middle_of(const Vector2d& from, const Vector2d& to) {
 }
 
 /// The line integrals of Green's theorem along an arc.
-void add_arc(const Disc2& disc, const Vector2d& from, const Vector2d& to, int depth, Moments& sum) {
+void add_arc(const Disc2& disc, const Vector2d& from, const Vector2d& to, int depth, AreaMoments& sum) {
   const Vector2d middle = middle_of(from, to);
   if (depth > 0) {
     add_arc(disc, from, middle, depth - 1, sum);
@@ -69,7 +69,7 @@ void add_arc(const Disc2& disc, const Vector2d& from, const Vector2d& to, int de
     const double step = weight * reach * 2 * scale * disc.radius;
     const double x = disc.at.x() + disc.radius * d.x(), y = disc.at.y() + disc.radius * d.y();
     const double dx = -d.y() * step, dy = d.x() * step;
-    Moments m;
+    AreaMoments m;
     m << x * dy, 0.5 * x * x * dy, -0.5 * y * y * dx, x * x * x * dy / 3, -y * y * y * dx / 3, 0.5 * x * x * y * dy;
     sum += m;
   });
@@ -91,9 +91,9 @@ std::vector<Disc2> seen(const std::vector<Disc2>& discs) {
   return left;
 }
 
-Moments moments_of(const std::vector<Disc2>& all) {
+AreaMoments moments_of(const std::vector<Disc2>& all) {
   const std::vector<Disc2> discs = seen(all);
-  Moments sum = Moments::Zero();
+  AreaMoments sum = AreaMoments::Zero();
   std::vector<Vector2d> cuts;
   for (const Disc2& disc : discs) {
     cuts = {Vector2d(1, 0)};
@@ -162,7 +162,7 @@ std::vector<double> heights_of_changes(const std::vector<Ball>& s) {
 MassProperties union_of_discs(const std::vector<Ball>& balls) {
   std::vector<Disc2> discs;
   for (const Ball& ball : balls) discs.push_back({ball.at.head<2>(), ball.radius});
-  const Moments m = moments_of(discs);
+  const AreaMoments m = moments_of(discs);
   MassProperties p;
   p.volume = m[0];
   p.centre = Vector3d(m[1], m[2], 0) / m[0];
@@ -187,7 +187,7 @@ MassProperties union_of_spheres(const std::vector<Ball>& spheres) {
         if (squared > 0) discs.push_back({ball.at.head<2>(), std::sqrt(squared)});
       }
       if (discs.empty()) return;
-      const Moments m = step * moments_of(discs);
+      const AreaMoments m = step * moments_of(discs);
       volume += m[0];
       first += Vector3d(m[1], m[2], z * m[0]);
       Eigen::Matrix3d here;

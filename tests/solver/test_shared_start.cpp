@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/specimen/clumps.hpp"
 #include "tests/solver/instruction_set.hpp"
 #include "tests/specimens.hpp"
 
@@ -18,6 +19,21 @@ struct Kind {
   Specimen specimen;
 };
 
+/// Dumb-bells at the sites of a crystal, turned one after the other.
+Specimen clumps(Shape shape) {
+  const int d = dimension_of(shape), side = d == 2 ? 6 : 4;
+  Specimen s = empty_specimen(shape, side * 0.01, material_of_every_law(), Law::linear_stiffness);
+  if (d == 2) s.cell.lattice(2, 2) = 0.01;
+  s.solver.max_overlap_ratio = 0.8;
+  const Clump pair = clump_of("pair", {{{-0.4, 0, 0}, 1}, {{0.4, 0, 0}, 1}}, d);
+  for (int n = 0; n < (d == 2 ? side * side : side * side * side); ++n) {
+    const Vector3 site(n % side, n / side % side, d == 2 ? 0 : n / (side * side));
+    const Vector3 x = 0.01 * (site - 0.5 * (side - 1) * Vector3(1, 1, d == 2 ? 0 : 1));
+    add_clump(s, pair, 0.0052, x, normalised(Turn{1 + 0.1 * (n % 7), {0, 0, 0.3 * (n % 5)}}));
+  }
+  return s;
+}
+
 std::vector<Kind> kinds() {
   std::vector<Kind> all;
   for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse})
@@ -28,6 +44,8 @@ std::vector<Kind> kinds() {
       s.solver.energy_balance = shape == Shape::disc && rolling;
       all.push_back({std::string(fields::text_of(shape)) + (rolling ? ", rolling" : ""), at_rest(s, 1e-6).specimen()});
     }
+  for (const Shape shape : {Shape::disc, Shape::sphere})
+    all.push_back({"clumps of " + std::string(fields::text_of(shape)) + "s", at_rest(clumps(shape), 1e-6).specimen()});
   return all;
 }
 
