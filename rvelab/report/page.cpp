@@ -105,6 +105,14 @@ Curves curves_of(const Test& test) {
   return {{"strain", "q_over_p"}, {"strain", "volumetric_strain"}};
 }
 
+/// These, and one of each kind of interaction that the records count: bonds, bridges of water, adhesive pairs.
+Curves with_interactions(Curves curves, const std::vector<Column>& columns) {
+  for (const std::string key : {"bonds", "bridges", "adhesive_pairs"})
+    if (std::any_of(columns.begin(), columns.end(), [&](const Column& column) { return column.key == key; }))
+      curves.push_back({curves.front()[0] == "strain" ? "strain" : "record", key});
+  return curves;
+}
+
 Json run_of(const Test& test, std::size_t kind, std::size_t every) {
   Json run{{"file", test.file}, {"kind", kind}, {"dimension", test.dimension}, {"complete", test.recorded.complete}};
   Json stages = Json::array();
@@ -122,7 +130,7 @@ Json section_of(const std::string& name, const std::vector<Test>& tests, std::si
   Json section{{"name", name}, {"kind", "test"}, {"dimension", tests.front().dimension}};
   section["stages"] = tests.front().recorded.result.stages;
   section["last_stage"] = calibrate::last_stage(tests.front().recorded.result).front().stage;
-  section["curves"] = curves_of(tests.front());
+  section["curves"] = with_interactions(curves_of(tests.front()), columns_of(tests.front()));
   section["kinds"] = Json::array();
   for (const Kind& kind : kinds)
     section["kinds"].push_back(

@@ -87,6 +87,8 @@ def setUpModule() -> None:
         run("run", "cyclic_shear", "--specimen", "S_dense/S_1.h5", "-o", f"cycles/{amplitude}.h5", "--set", "stage.cycles.cycles=3",
             "--set", f"stage.cycles.to_strain={amplitude}", "--set", "stage.cycles.record_every=1e-4")
     run("report", "cycles", "-o", "cycles.html")
+    run("run", "biaxial_cemented", "--specimen", "S_dense/S_1.h5", "-o", "cemented.h5", "--set", "stage.compression.to_strain=0.01")
+    run("report", "cemented.h5", "-o", "cemented.html")
 
 
 class Page(unittest.TestCase):
@@ -148,6 +150,15 @@ class Page(unittest.TestCase):
                 return text
             time.sleep(0.05)
         self.fail(f"nothing was saved by {selector}")
+
+
+class Cemented(Page):
+    page = "cemented.html"
+
+    def test_a_chart_tells_how_many_bonds_are_left(self) -> None:
+        shown = self.browser.value("[...document.querySelectorAll('#charts select')].map((each) => each.value)")
+        self.assertEqual([value for value in shown if value in ("q_over_p", "volumetric_strain", "bonds")],
+                         ["q_over_p", "volumetric_strain", "bonds"])
 
 
 class Plane(Page):
