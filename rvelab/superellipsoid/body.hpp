@@ -77,18 +77,6 @@ inline SuperellipsoidForm<double> plain_form_of(const Superellipsoid& s) {
 }
 inline constexpr SuperellipsoidAxes<double> own_axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-/// Trace and determinant of the radii of curvature across a direction, m and m^2.
-template <class V>
-struct RadiiOfCurvature {
-  V sum, product;
-};
-template <class V>
-inline __attribute__((always_inline)) RadiiOfCurvature<V> radii_of_curvature(const SupportAt<V>& at) {
-  const Triple<V> area = cross(at.xy.along, at.z.along);
-  return {at.xy.stiffness * dot(at.xy.along, at.xy.along) + at.z.stiffness * dot(at.z.along, at.z.along),
-          at.xy.stiffness * (at.z.stiffness * dot(area, area))};
-}
-
 /// A ball of this radius rolls inside: by Blaschke one as small as the least radius of curvature. That is searched over
 /// directions, 20 % is taken off.
 inline double rolling_radius_of(const Superellipsoid& s) {

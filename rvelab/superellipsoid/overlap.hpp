@@ -118,37 +118,52 @@ inline __attribute__((always_inline)) Across<V> solved(const ModeFrame<V>& f, V 
   return {(F1 - f.c12 * y2) / f.c11, y2};
 }
 
-/// The next step from a direction: a turn of it, by the laws of the modes; what f falls by it, twice over, if f is a
-/// parabola; the farthest that a mode goes, as a part of where it is.
+/// Newton's step from a direction; what f falls by it, twice over, if f is a parabola; the farthest that a mode goes,
+/// as a part of where it is.
 template <class V>
-struct OverlapStep {
-  Triple<V> turn, plain;  ///< across n; Newton's
-  V s[4];                 ///< U.plain
-  V gain, farthest;
+struct PlainStep {
+  Triple<V> plain;  ///< the turn, across n
+  V s[4];           ///< U.plain
+  V gain, farthest, shift;
 };
 template <class V>
-inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V>& at, V rolling) {
-  const V one = V{} + 1.0, most = 0.9 * rolling;
-  Modes<V> modes = modes_of(at);
-  const V shift = (at.overlap < most) ? at.overlap : most;  // C is not below the rolling radii
-  const ModeFrame<V> frame = frame_of(modes.k, modes.along, at.n, shift);
+inline __attribute__((always_inline)) PlainStep<V> plain_step(const OverlapAt<V>& at, const Modes<V>& modes,
+                                                              V rolling) {
+  PlainStep<V> step;
+  const V most = 0.9 * rolling;  // C is not below the rolling radii
+  step.shift = (at.overlap < most) ? at.overlap : most;
+  const ModeFrame<V> frame = frame_of(modes.k, modes.along, at.n, step.shift);
   const Across<V> y = solved(frame, dot(at.downhill, frame.first), dot(at.downhill, frame.second));
-  OverlapStep<V> step;
   step.plain = plus(times(y.first, frame.first), y.second, frame.second);
   step.gain = dot(step.plain, at.downhill);
   step.farthest = V{};
-  V followed[4];
   for (int m = 0; m < 4; ++m) {
     step.s[m] = frame.u1[m] * y.first + frame.u2[m] * y.second;
+    step.farthest = larger_of(step.farthest, magnitude_of((modes.growth[m] * modes.share[m]) * step.s[m]));
+  }
+  return step;
+}
+
+/// The same with the turn by the laws of the modes.
+template <class V>
+struct OverlapStep : PlainStep<V> {
+  Triple<V> turn;
+};
+template <class V>
+inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V>& at, V rolling) {
+  const V one = V{} + 1.0;
+  Modes<V> modes = modes_of(at);
+  OverlapStep<V> step = {plain_step(at, modes, rolling), {}};
+  V followed[4];
+  for (int m = 0; m < 4; ++m) {
     const V relative = (modes.growth[m] * modes.share[m]) * step.s[m];
-    step.farthest = larger_of(step.farthest, magnitude_of(relative));
     const V z = clamped(one + relative, V{} + 1e100), size = larger_of(magnitude_of(z), V{} + 1e-6);
     const V P = exp2_of(clamped((one / modes.share[m] - 1.0) * log2_of(size), V{} + 600.0));
     modes.k[m] = modes.k[m] / P;
     followed[m] = (z * P - 1.0) / modes.growth[m];
   }
-  const ModeFrame<V> next = frame_of(modes.k, modes.along, at.n, shift);
-  V F1 = -(shift * dot(step.plain, next.first)), F2 = -(shift * dot(step.plain, next.second));
+  const ModeFrame<V> next = frame_of(modes.k, modes.along, at.n, step.shift);
+  V F1 = -(step.shift * dot(step.plain, next.first)), F2 = -(step.shift * dot(step.plain, next.second));
   for (int m = 0; m < 4; ++m) {
     const V force = modes.k[m] * followed[m];
     F1 = F1 + force * next.u1[m];

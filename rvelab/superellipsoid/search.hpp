@@ -16,10 +16,17 @@ namespace {
 using OverlapPair = SuperellipsoidPair<double>;
 using Place = OverlapAt<double>;
 
-inline double size_of(const OverlapPair& pair) {
-  const Triple<double>&i = pair.form_i.half, &j = pair.form_j.half;
-  const auto largest = [](const Triple<double>& v) { return larger_of(v.x, larger_of(v.y, v.z)); };
-  return largest(i) + largest(j);
+template <class V>
+inline __attribute__((always_inline)) V size_of(const SuperellipsoidPair<V>& pair) {
+  const auto largest = [](const Triple<V>& v) { return larger_of(v.x, larger_of(v.y, v.z)); };
+  return largest(pair.form_i.half) + largest(pair.form_j.half);
+}
+
+/// Whether f falls no further by a step beyond rounding, nor the points of both come nearer.
+template <class V>
+inline __attribute__((always_inline)) auto is_least(const OverlapAt<V>& at, const OverlapStep<V>& step, V size) {
+  return (dot(at.downhill, at.downhill) <= 1e-26 * size * size) |
+         ((step.gain <= 1e-15 * size) & ((step.farthest <= 1e-6) | (dot(step.turn, step.turn) <= 1e-30)));
 }
 
 /// What one body says of the next direction: where its point goes by Newton's step it has this normal, and these modes.
@@ -41,12 +48,6 @@ inline Triple<double> turn_by_bodies(const OverlapPair& pair, const Place& at, c
   const NextNormal i = next_normal(pair.form_i, pair.axes_i, at.i, step.s, 1);
   const NextNormal j = next_normal(pair.form_j, pair.axes_j, at.j, step.s + 2, -1);
   return joined_turn(at.n, i.there, i.n, j.there, j.n, shift, step.plain);
-}
-
-/// Whether f falls no further by a step beyond rounding, nor the points of both come nearer.
-inline bool is_least(const Place& at, const OverlapStep<double>& step, double size) {
-  return dot(at.downhill, at.downhill) <= 1e-26 * size * size ||
-         (step.gain <= 1e-15 * size && (step.farthest <= 1e-6 || dot(step.turn, step.turn) <= 1e-30));
 }
 
 /// Downhill to where f is least nearby.
@@ -152,7 +153,7 @@ constexpr int superellipsoid_steps = 12;
 /// Whether the next step, of `part` of where the modes are at most, leads to the least: f to the third power of it, n
 /// and points to the second.
 template <class V>
-inline __attribute__((always_inline)) auto is_near_least(const OverlapStep<V>& step, double part) {
+inline __attribute__((always_inline)) auto is_near_least(const PlainStep<V>& step, double part) {
   return (step.farthest <= part) & (dot(step.plain, step.plain) <= 0.25 * (part * part));
 }
 

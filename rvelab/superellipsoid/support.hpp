@@ -142,5 +142,28 @@ inline __attribute__((always_inline)) Triple<V> normal_at(const SuperellipsoidFo
       axes, Triple<V>{with_sign(gradient.x, own.x), with_sign(gradient.y, own.y), with_sign(gradient.z, own.z)}));
 }
 
+/// Trace and determinant of the radii of curvature across a direction, m and m^2.
+template <class V>
+struct RadiiOfCurvature {
+  V sum, product;
+};
+template <class V>
+inline __attribute__((always_inline)) RadiiOfCurvature<V> radii_of_curvature(const SupportAt<V>& at) {
+  const Triple<V> area = cross(at.xy.along, at.z.along);
+  return {at.xy.stiffness * dot(at.xy.along, at.xy.along) + at.z.stiffness * dot(at.z.along, at.z.along),
+          at.xy.stiffness * (at.z.stiffness * dot(area, area))};
+}
+
+/// Hertz's radius of one body from its curvature at the contact, m: that of the Gaussian curvature, or of the mean one
+/// (1/r + 1/s)/2; no more than `most`, since flat sides have none.
+template <class V>
+inline __attribute__((always_inline)) V gauss_radius(const RadiiOfCurvature<V>& radii, V most) {
+  return (radii.product < most * most) ? square_root(radii.product) : most;
+}
+template <class V>
+inline __attribute__((always_inline)) V mean_radius(const RadiiOfCurvature<V>& radii, V most) {
+  return (2.0 * radii.product < most * radii.sum) ? 2.0 * radii.product / radii.sum : most;
+}
+
 }  // namespace
 }  // namespace rvelab

@@ -1,0 +1,217 @@
+// Many pairs at a time: the bits of one pair alone, whatever the width and wherever a search begins; ellipsoids by
+// their own formulas; forces and moments from rows.
+#include <Eigen/Geometry>
+
+#include "rvelab/solver/kernels/superellipsoids.hpp"
+#include "rvelab/superellipsoid/ellipsoids.hpp"
+#include "tests/catch.hpp"
+#include "tests/superellipsoid/random_pairs.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+/// W pairs side by side: both are nothing but doubles.
+template <int W>
+SuperellipsoidPair<typename Lanes<W>::V> side_by_side(const OverlapPair* pairs) {
+  constexpr std::size_t members = sizeof(OverlapPair) / sizeof(double);
+  SuperellipsoidPair<typename Lanes<W>::V> joined;
+  double columns[members][W];
+  for (std::size_t m = 0; m < members; ++m)
+    for (int lane = 0; lane < W; ++lane)
+      std::memcpy(&columns[m][lane], reinterpret_cast<const char*>(&pairs[lane]) + m * sizeof(double), sizeof(double));
+  static_assert(sizeof(joined) == sizeof(columns));
+  std::memcpy(static_cast<void*>(&joined), columns, sizeof(columns));
+  return joined;
+}
+
+template <class V>
+std::vector<double> numbers_of(const ContactsOf<V>& c, int lane) {
+  if (!(in_lane(c.overlap, lane) > 0)) return {0};
+  return {in_lane(c.overlap, lane), in_lane(c.n.x, lane),     in_lane(c.n.y, lane),     in_lane(c.n.z, lane),
+          in_lane(c.point.x, lane), in_lane(c.point.y, lane), in_lane(c.point.z, lane), in_lane(c.radii_i.sum, lane)};
+}
+
+/// Without a guess, or with one near the normal, or anywhere.
+template <int W>
+std::vector<std::vector<double>> contacts_by(const std::vector<OverlapPair>& pairs, Draw& draw, double spread) {
+  using V = typename Lanes<W>::V;
+  std::vector<std::vector<double>> all;
+  for (std::size_t k = 0; k + W <= pairs.size(); k += W) {
+    Triple<V> guess = {V{}, V{}, V{}};
+    const auto pair = side_by_side<W>(&pairs[k]);
+    ContactsOf<V> contacts = contacts_of(pair, guess);
+    if (spread > 0) {
+      const Vector u = draw.direction();
+      guess = of_length_1(plus(guess, V{} + spread, Triple<V>{V{} + u.x, V{} + u.y, V{} + u.z}));
+      contacts = contacts_of(pair, guess);
+    }
+    for (int lane = 0; lane < W; ++lane) all.push_back(numbers_of(contacts, lane));
+  }
+  return all;
+}
+
+std::vector<OverlapPair> drawn_pairs(Draw& draw, int count, double exponent, double aspect) {
+  std::vector<OverlapPair> pairs;
+  for (int k = 0; k < count; ++k) {
+    pairs.push_back(known_pair(draw, draw.shape(exponent, aspect), draw.shape(exponent, aspect), k % 3, 0.03).pair);
+    if (k % 5 == 0) pairs.back().branch = times(1.1, pairs.back().branch);
+  }
+  return pairs;
+}
+
+/// f = k overlap^(3/2); its energy is 2/5 f overlap.
+struct Hertz {
+  double k = 1e6;
+  template <class V>
+  V operator()(V overlap) const {
+    return k * (overlap * square_root(overlap));
+  }
+};
+
+std::array<double, 4> quaternion(const Axes& r) {
+  Eigen::Matrix3d turn;
+  turn << r.x.x, r.y.x, r.z.x, r.x.y, r.y.y, r.z.y, r.x.z, r.y.z, r.z.z;
+  const Eigen::Quaterniond q(turn);
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+struct TwoGrains {
+  double rows[2 * superellipsoid_row] = {};
+  void set(int grain, const Superellipsoid& s, const Vector& x, const std::array<double, 4>& q) {
+    const SuperellipsoidForm<double> f = form_of(s);
+    const double row[superellipsoid_row] = {x.x, x.y, x.z, f.rolling,  q[0],      q[1],      q[2],     q[3],
+                                            s.a, s.b, s.c, f.share_xy, f.share_z, f.root_xy, f.root_z, 0};
+    std::copy_n(row, superellipsoid_row, rows + grain * superellipsoid_row);
+  }
+  NormalForces<double> forces() const {
+    const std::int32_t i = 0, j = 1;
+    Triple<double> guess = {0, 0, 0};
+    return normal_forces<1>(rows, &i, &j, Triple<double>{0, 0, 0}, guess, Hertz{});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("contacts have the same bits one, two at a time, and from any guess") {
+  Draw draw;
+  for (const auto& [exponent, aspect] : {std::pair{4.0, 3.0}, {8.0, 10.0}}) {
+    const auto pairs = drawn_pairs(draw, 600, exponent, aspect);
+    const auto alone = contacts_by<1>(pairs, draw, 0);
+    CHECK(contacts_by<2>(pairs, draw, 0) == alone);
+    for (const double spread : {1e-9, 1e-7, 1e-5, 1e-2, 1.0}) {
+      CAPTURE(exponent, spread);
+      CHECK(contacts_by<1>(pairs, draw, spread) == alone);
+      CHECK(contacts_by<2>(pairs, draw, spread) == alone);
+    }
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const SuperellipsoidContact contact = contact_of(pairs[k]);
+      if (contact.overlap > 0) {
+        REQUIRE(alone[k].size() == 8);
+        CHECK(std::abs(alone[k][0] - contact.overlap) < 1e-12);
+        CHECK(length_of(difference({alone[k][1], alone[k][2], alone[k][3]}, contact.n)) < 1e-8);
+      } else {
+        CHECK(alone[k].size() == 1);
+      }
+    }
+  }
+}
+
+TEST_CASE("ellipsoids by their own formulas are the superellipsoids of exponents 2, radii of curvature too") {
+  Draw draw;
+  for (int k = 0; k < 2000; ++k) {
+    CAPTURE(k);
+    const auto ellipsoid = [&] {
+      Superellipsoid s = draw.shape(4, 10);
+      s.e = s.n = 2;
+      return s;
+    };
+    const KnownPair known = known_pair(draw, ellipsoid(), ellipsoid(), 0, k % 4 ? 0.02 : 2);
+    const OverlapPair& pair = known.pair;
+    const EllipsoidPair<double> same = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                                        ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
+    const ContactsOf<double> found = contacts_of(same, [&](int) {
+      ContactsOf<double> searched;
+      from_bodies(pair, searched);
+      return searched;
+    });
+    const SuperellipsoidContact contact = contact_of(pair);
+    CHECK(found.overlap == Approx(contact.overlap).margin(1e-12));
+    CHECK(length_of(difference(found.n, contact.n)) < 1e-7);
+    CHECK(length_of(difference(found.point, contact.point)) < 1e-6);
+    const RadiiOfCurvature<double> radii = radii_of_curvature(contact.at.j);
+    CHECK(found.radii_j.sum == Approx(radii.sum).epsilon(1e-3));
+    CHECK(found.radii_j.product == Approx(radii.product).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("Hertz's radius from curvature: spheres, tips and flanks of spheroids, flat sides") {
+  const auto radii = [](const Superellipsoid& s, const Vector& n) {
+    return radii_of_curvature(support_at(plain_form_of(s), own_axes, n));
+  };
+  const double a = 1.3, b = 0.4;
+  CHECK(gauss_radius(radii({a, a, a, 2, 2}, of_length_1(Vector{1, 2, 3})), 9.0) == Approx(a).epsilon(1e-13));
+  CHECK(mean_radius(radii({a, a, a, 2, 2}, of_length_1(Vector{1, 2, 3})), 9.0) == Approx(a).epsilon(1e-13));
+  const Superellipsoid spheroid = {b, b, a, 2, 2};
+  CHECK(gauss_radius(radii(spheroid, {0, 0, 1}), 9.0) == Approx(b * b / a).epsilon(1e-12));
+  CHECK(mean_radius(radii(spheroid, {0, 0, 1}), 9.0) == Approx(b * b / a).epsilon(1e-12));
+  CHECK(gauss_radius(radii(spheroid, {1, 0, 0}), 9.0) == Approx(a).epsilon(1e-12));
+  CHECK(mean_radius(radii(spheroid, {1, 0, 0}), 9.0) == Approx(2 / (b / (a * a) + 1 / b)).epsilon(1e-12));
+  CHECK(gauss_radius(radii({1, 1, 1, 8, 8}, {0, 0, 1}), 9.0) == 9);
+  CHECK(mean_radius(radii({1, 1, 1, 8, 8}, {0, 0, 1}), 9.0) == 9);
+}
+
+TEST_CASE("forces and moments of two grains balance, and the work around any loop is none") {
+  Draw draw;
+  for (int k = 0; k < 12; ++k) {
+    CAPTURE(k);
+    const Superellipsoid si = draw.shape(4, 2), sj = draw.shape(4, 2);
+    const KnownPair known = known_pair(draw, si, sj, 0, 0.2);
+    const Axes axes_i = known.pair.axes_i, axes_j = known.pair.axes_j;
+    TwoGrains grains;
+    grains.set(0, si, {0.3, -0.2, 0.1}, quaternion(axes_i));
+    // Around a circle of shifts while the second grain turns about an axis and back.
+    const Vector u = of_length_1(cross(known.n, draw.direction())), about = draw.direction();
+    const double reach = 0.2 * known.depth;
+    constexpr int steps = 400;
+    double work = 0, most = 0;
+    Vector x_last{}, turn_last{};
+    NormalForces<double> last{};
+    for (int t = 0; t <= steps; ++t) {
+      const double angle = 2 * std::numbers::pi * t / steps, turn = reach * std::sin(angle);
+      const Vector x =
+          plus(plus(known.pair.branch, reach * std::cos(angle), u), 0.5 * reach * std::sin(angle), known.n);
+      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), quaternion(rotated(rotation(about, turn), axes_j)));
+      const NormalForces<double> now = grains.forces();
+      REQUIRE(now.overlap > 0);
+      const Vector arm = cross(x, now.force);  // moments about the centre of the first
+      CHECK(length_of(plus(plus(now.moment_i, 1.0, now.moment_j), 1.0, arm)) < 1e-13 * length_of(now.force));
+      if (t > 0) {
+        const double part =
+            0.5 * (dot(plus(now.force, 1.0, last.force), difference(x, x_last)) +
+                   dot(plus(now.moment_j, 1.0, last.moment_j), difference(times(turn, about), turn_last)));
+        work += part;
+        most += std::abs(part);
+      }
+      last = now;
+      x_last = x;
+      turn_last = times(turn, about);
+    }
+    REQUIRE(most > 0);
+    CHECK(std::abs(work) < 1e-4 * most);  // the trapezoidal rule of a loop
+    // Pressed along n from the first touch on, the work is the energy of the overlap.
+    double pressed = 0;
+    constexpr int parts = 200;
+    double before = 0;
+    for (int t = 0; t <= parts; ++t) {
+      const double in = known.depth * t / parts;
+      const Vector x = plus(known.pair.branch, known.depth - in, known.n);
+      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), quaternion(axes_j));
+      const double now = dot(grains.forces().force, known.n);
+      if (t > 0) pressed += 0.5 * (now + before) * known.depth / parts;
+      before = now;
+    }
+    CHECK(pressed == Approx(0.4 * Hertz{}(known.depth) * known.depth).epsilon(1e-4));
+  }
+}
