@@ -185,12 +185,12 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
   problem.batch = std::size_t(arguments.batch.value_or(8));
   FitOutcome outcome;
   outcome.targets = problem.targets;
-  outcome.finding = fit::search(problem, [&](const std::vector<fit::Trial>& trials) {
+  outcome.finding = fit::search(problem, [&](const std::vector<fit::Candidate>& candidates) {
     std::vector<FitTest> tests;
-    for (const fit::Trial& trial : trials) {
-      FitTest test{trial.number, trial.place, trial.specimen};
+    for (const fit::Candidate& candidate : candidates) {
+      FitTest test{candidate.number, candidate.point, candidate.specimen};
       for (Eigen::Index k = 0; k < test.values.size(); ++k)
-        test.values[k] = setup.parameters[std::size_t(k)].value(trial.place[k]);
+        test.values[k] = setup.parameters[std::size_t(k)].value(candidate.point[k]);
       tests.push_back(test);
     }
     std::vector<fit::Answer> answers;

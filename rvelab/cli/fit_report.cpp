@@ -28,8 +28,8 @@ Interval interval_of(const Eigen::VectorXd& sample) {
   return {mean, deviation, fit::quantile(sample, 0.025), fit::quantile(sample, 0.975)};
 }
 
-Eigen::VectorXd values_of(const fit::Parameter& parameter, const Eigen::VectorXd& places) {
-  Eigen::VectorXd values = places;
+Eigen::VectorXd values_of(const fit::Parameter& parameter, const Eigen::VectorXd& points) {
+  Eigen::VectorXd values = points;
   for (double& value : values) value = parameter.value(value);
   return values;
 }
@@ -48,11 +48,11 @@ std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
   for (const fit::Parameter& parameter : setup.parameters) text += "," + parameter.key;
   for (const fit::Target& target : outcome.targets) text += "," + target.name;
   text += "\n";
-  for (std::size_t k = 0; k < outcome.finding.trials.size(); ++k) {
-    const fit::Trial& trial = outcome.finding.trials[k];
-    text += std::to_string(k + 1) + "," + std::to_string(trial.specimen + 1);
+  for (std::size_t k = 0; k < outcome.finding.candidates.size(); ++k) {
+    const fit::Candidate& candidate = outcome.finding.candidates[k];
+    text += std::to_string(k + 1) + "," + std::to_string(candidate.specimen + 1);
     for (std::size_t p = 0; p < setup.parameters.size(); ++p)
-      text += "," + csv_cell(setup.parameters[p].value(trial.place[Eigen::Index(p)]));
+      text += "," + csv_cell(setup.parameters[p].value(candidate.point[Eigen::Index(p)]));
     const fit::Answer& answer = outcome.finding.answers[k];
     for (std::size_t t = 0; t < outcome.targets.size(); ++t)
       text += "," + (t < answer.size() ? csv_cell(answer[t]) : "");
@@ -99,10 +99,10 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
   json["specimens"] = setup.specimen_count;
   json["same_specimens"] = setup.same_specimens;
   json["tests"] = Json::array();
-  for (std::size_t k = 0; k < finding.trials.size(); ++k) {
-    Json one{{"specimen", finding.trials[k].specimen + 1}, {"values", Json::object()}};
+  for (std::size_t k = 0; k < finding.candidates.size(); ++k) {
+    Json one{{"specimen", finding.candidates[k].specimen + 1}, {"values", Json::object()}};
     for (std::size_t p = 0; p < setup.parameters.size(); ++p)
-      one["values"][setup.parameters[p].key] = setup.parameters[p].value(finding.trials[k].place[Eigen::Index(p)]);
+      one["values"][setup.parameters[p].key] = setup.parameters[p].value(finding.candidates[k].point[Eigen::Index(p)]);
     one["targets"] = finding.answers[k];
     if (!outcome.results[k].failure.empty()) one["failure"] = outcome.results[k].failure;
     json["tests"].push_back(one);

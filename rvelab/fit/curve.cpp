@@ -136,7 +136,7 @@ std::vector<Curve> curves_in(const io::CsvTable& table) {
   if (x.size() < 2) throw InputError(path + ": " + std::to_string(x.size()) + " rows; allowed: at least 2");
   for (std::size_t k = 1; k < x.size(); ++k)
     if (!(x[k] > x[k - 1]))
-      throw InputError(table.place(k, 0) +
+      throw InputError(table.location(k, 0) +
                        " does not rise; allowed: rising values; sort the rows, or leave unloading out");
   const bool logarithm = kinds[0].quantity == "p";
   if (logarithm && !(x.front() > 0)) throw InputError(path + ": p is not above 0; allowed: p > 0; leave the row out");

@@ -41,8 +41,8 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 }  // namespace
 
-double Parameter::value(double place) const {
-  const double found = logarithmic ? low * std::pow(high / low, place) : low + place * (high - low);
+double Parameter::value(double point) const {
+  const double found = logarithmic ? low * std::pow(high / low, point) : low + point * (high - low);
   const double whole = std::round(found);  // a number of grains, not 200.00000000000003
   return std::abs(found - whole) < 1e-12 * std::abs(whole) ? whole : found;
 }

@@ -15,7 +15,7 @@ struct Parameter {
   bool logarithmic = false;  ///< evenly in the logarithm
   long grid = 0;             ///< values of a sweep; 0: none is asked for
 
-  double value(double place) const;            ///< of a place from 0 to 1
+  double value(double point) const;            ///< of a point from 0 to 1
   std::string assignment(double value) const;  ///< "key=value", every bit of the value
 };
 

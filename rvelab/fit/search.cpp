@@ -15,7 +15,7 @@ namespace {
 
 /// Tests that could be carried out, as matrices.
 struct Learned {
-  Eigen::MatrixXd places, values;
+  Eigen::MatrixXd points, values;
   std::vector<std::size_t> specimens;
 };
 
@@ -36,10 +36,10 @@ Learned learned_from(const Problem& problem, const Finding& so_far) {
                   Eigen::MatrixXd(Eigen::Index(good.size()), Eigen::Index(problem.targets.size())),
                   {}};
   for (std::size_t row = 0; row < good.size(); ++row) {
-    learned.places.row(Eigen::Index(row)) = so_far.trials[good[row]].place.transpose();
+    learned.points.row(Eigen::Index(row)) = so_far.candidates[good[row]].point.transpose();
     for (std::size_t k = 0; k < problem.targets.size(); ++k)
       learned.values(Eigen::Index(row), Eigen::Index(k)) = so_far.answers[good[row]][k];
-    learned.specimens.push_back(so_far.trials[good[row]].specimen);
+    learned.specimens.push_back(so_far.candidates[good[row]].specimen);
   }
   return learned;
 }
@@ -60,36 +60,36 @@ class Judge {
     before.resize(std::size_t(scores.cols()));
     for (Eigen::Index k = 0; k < scores.cols(); ++k) {
       Eigen::VectorXd& hyperparameters = before[std::size_t(k)];
-      surrogates_.emplace_back(learned.places, learned.specimens, scores.col(k), hyperparameters);
+      surrogates_.emplace_back(learned.points, learned.specimens, scores.col(k), hyperparameters);
       hyperparameters = surrogates_.back().hyperparameters();
     }
   }
 
-  Eigen::VectorXd log_likelihood(const Eigen::MatrixXd& places, double power, double widening) const {
-    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(places.rows());
+  Eigen::VectorXd log_likelihood(const Eigen::MatrixXd& points, double power, double widening) const {
+    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(points.rows());
     for (std::size_t k = 0; k < surrogates_.size(); ++k) {
-      const Prediction found = surrogates_[k].at(places, of_specimens_);
+      const Prediction found = surrogates_[k].at(points, of_specimens_);
       const Eigen::ArrayXd variance = widening * widening * variance_of(k, found);
       sum -= 0.5 * (off(k, found).square() / variance + variance.log());
     }
     return power * sum;
   }
 
-  /// Sum of the squared errors over their variances, at each place.
-  Eigen::VectorXd squares(const Eigen::MatrixXd& places) const {
-    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(places.rows());
+  /// Sum of the squared errors over their variances, at each point.
+  Eigen::VectorXd squares(const Eigen::MatrixXd& points) const {
+    Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(points.rows());
     for (std::size_t k = 0; k < surrogates_.size(); ++k) {
-      const Prediction found = surrogates_[k].at(places, of_specimens_);
+      const Prediction found = surrogates_[k].at(points, of_specimens_);
       sum += off(k, found).square() / variance_of(k, found);
     }
     return sum;
   }
 
-  /// Means of all targets at the places.
-  Eigen::MatrixXd predicted(const Eigen::MatrixXd& places) const {
-    Eigen::MatrixXd scores(places.rows(), Eigen::Index(surrogates_.size()));
+  /// Means of all targets at the points.
+  Eigen::MatrixXd predicted(const Eigen::MatrixXd& points) const {
+    Eigen::MatrixXd scores(points.rows(), Eigen::Index(surrogates_.size()));
     for (std::size_t k = 0; k < surrogates_.size(); ++k)
-      scores.col(Eigen::Index(k)) = surrogates_[k].at(places, of_specimens_).mean;
+      scores.col(Eigen::Index(k)) = surrogates_[k].at(points, of_specimens_).mean;
     return components_.back(scores);
   }
 
@@ -111,14 +111,14 @@ class Judge {
 };
 
 /// Adds the trials of one batch and what they give.
-void run_batch(const Problem& problem, const RunTrials& run, const Eigen::MatrixXd& places, Finding& so_far) {
-  std::vector<Trial> batch;
-  for (Eigen::Index k = 0; k < places.rows(); ++k) {
-    const std::size_t number = so_far.trials.size() + std::size_t(k);
-    batch.push_back({number, places.row(k).transpose(), number % problem.specimens});
+void run_batch(const Problem& problem, const RunCandidates& run, const Eigen::MatrixXd& points, Finding& so_far) {
+  std::vector<Candidate> batch;
+  for (Eigen::Index k = 0; k < points.rows(); ++k) {
+    const std::size_t number = so_far.candidates.size() + std::size_t(k);
+    batch.push_back({number, points.row(k).transpose(), number % problem.specimens});
   }
   const std::vector<Answer> answers = run(batch);
-  so_far.trials.insert(so_far.trials.end(), batch.begin(), batch.end());
+  so_far.candidates.insert(so_far.candidates.end(), batch.begin(), batch.end());
   so_far.answers.insert(so_far.answers.end(), answers.begin(), answers.end());
 }
 
@@ -126,19 +126,19 @@ void run_batch(const Problem& problem, const RunTrials& run, const Eigen::Matrix
 
 std::size_t usual_tests(Eigen::Index parameters) { return std::size_t(24 + 16 * parameters); }
 
-Finding search(const Problem& problem, const RunTrials& run) {
+Finding search(const Problem& problem, const RunCandidates& run) {
   Finding found;
   const std::size_t first =
       std::min<std::size_t>(problem.tests, std::size_t(std::max<Eigen::Index>(8, 5 * problem.parameters)));
   run_batch(problem, run, halton(Eigen::Index(first), problem.parameters), found);
   std::vector<Eigen::VectorXd> hyperparameters;
-  while (found.trials.size() < problem.tests) {
+  while (found.candidates.size() < problem.tests) {
     const Judge judge(problem, learned_from(problem, found), hyperparameters);
     // Half of the likelihood's logarithm: wider than the posterior, so that its flanks are learned too.
     const Eigen::MatrixXd likely =
-        sampled([&](const Eigen::MatrixXd& places) { return judge.log_likelihood(places, 0.5, 1); }, problem.parameters,
-                200, found.trials.size());
-    const std::size_t count = std::min(problem.batch, problem.tests - found.trials.size());
+        sampled([&](const Eigen::MatrixXd& points) { return judge.log_likelihood(points, 0.5, 1); }, problem.parameters,
+                200, found.candidates.size());
+    const std::size_t count = std::min(problem.batch, problem.tests - found.candidates.size());
     Eigen::MatrixXd next(Eigen::Index(count), problem.parameters);
     for (std::size_t k = 0; k < count; ++k)
       next.row(Eigen::Index(k)) = likely.row(Eigen::Index(k) * likely.rows() / Eigen::Index(count));
@@ -146,8 +146,8 @@ Finding search(const Problem& problem, const RunTrials& run) {
   }
   const Judge judge(problem, learned_from(problem, found), hyperparameters);
   const auto sample = [&](double widening) {
-    return sampled([&](const Eigen::MatrixXd& places) { return judge.log_likelihood(places, 1, widening); },
-                   problem.parameters, problem.sample, found.trials.size());
+    return sampled([&](const Eigen::MatrixXd& points) { return judge.log_likelihood(points, 1, widening); },
+                   problem.parameters, problem.sample, found.candidates.size());
   };
   found.sample = sample(1);
   const double least = judge.squares(found.sample).minCoeff();

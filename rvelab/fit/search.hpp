@@ -26,34 +26,34 @@ struct Problem {
   bool same_specimens = false;  ///< the targets were measured on these specimens (their mean), not on others of a kind
   std::size_t tests = 0;        ///< to spend
   std::size_t batch = 8;        ///< tests at a time, whatever the number of threads
-  Eigen::Index sample = 1000;   ///< places of the posterior sample
+  Eigen::Index sample = 1000;   ///< points of the posterior sample
 };
 
-/// A test to make: its place in the unit cube of the parameters, and its specimen.
-struct Trial {
+/// A candidate: its point in the unit cube of the parameters, and its specimen.
+struct Candidate {
   std::size_t number = 0;  ///< from 0
-  Eigen::VectorXd place;
+  Eigen::VectorXd point;
   std::size_t specimen = 0;
 };
 
 /// What it gave, in the order of the targets; empty: it could not be carried out.
 using Answer = std::vector<double>;
 
-using RunTrials = std::function<std::vector<Answer>(const std::vector<Trial>&)>;
+using RunCandidates = std::function<std::vector<Answer>(const std::vector<Candidate>&)>;
 
 struct Finding {
-  std::vector<Trial> trials;
+  std::vector<Candidate> candidates;
   std::vector<Answer> answers;
-  Eigen::MatrixXd sample;     ///< places of the posterior, one a row
+  Eigen::MatrixXd sample;     ///< points of the posterior, one a row
   Eigen::MatrixXd predicted;  ///< mean of the tests at each of them, one column a target
-  double misfit = 0;          ///< root of the mean squared error of the best place over its standard deviation; above
+  double misfit = 0;          ///< root of the mean squared error of the best point over its standard deviation; above
                               ///< about 2 no parameters in their ranges give the targets
   double widening = 1;        ///< of the standard errors, where the targets contradict each other
 };
 
 /// Spends the tests and samples the posterior, of a prior that is uniform over the unit cube. Same problem and answers,
 /// same bits. Error if so many tests fail that too few are left.
-Finding search(const Problem& problem, const RunTrials& run);
+Finding search(const Problem& problem, const RunCandidates& run);
 
 /// Tests that are spent without another number: 24 and 16 for each parameter.
 std::size_t usual_tests(Eigen::Index parameters);

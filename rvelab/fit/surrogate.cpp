@@ -11,9 +11,9 @@ namespace {
 constexpr double usual_deviation = -1;  // logarithm of it, over that of the values
 
 /// Constant and linear terms of the trend.
-Eigen::MatrixXd trend_at(const Eigen::MatrixXd& places) {
-  Eigen::MatrixXd terms(places.rows(), places.cols() + 1);
-  terms << Eigen::VectorXd::Ones(places.rows()), places;
+Eigen::MatrixXd trend_at(const Eigen::MatrixXd& points) {
+  Eigen::MatrixXd terms(points.rows(), points.cols() + 1);
+  terms << Eigen::VectorXd::Ones(points.rows()), points;
   return terms;
 }
 
@@ -25,10 +25,10 @@ Eigen::ArrayXXd matern(const Eigen::ArrayXXd& squares) {
 
 }  // namespace
 
-Surrogate::Surrogate(const Eigen::MatrixXd& places, const std::vector<std::size_t>& specimens,
+Surrogate::Surrogate(const Eigen::MatrixXd& points, const std::vector<std::size_t>& specimens,
                      const Eigen::VectorXd& values, const Eigen::VectorXd& before)
-    : places_(places), same_specimen_(values.size(), values.size()) {
-  const Eigen::Index count = values.size(), parameters = places.cols();
+    : points_(points), same_specimen_(values.size(), values.size()) {
+  const Eigen::Index count = values.size(), parameters = points.cols();
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < count; ++j)
       same_specimen_(i, j) = specimens[std::size_t(i)] == specimens[std::size_t(j)] ? 1 : 0;
@@ -37,7 +37,7 @@ Surrogate::Surrogate(const Eigen::MatrixXd& places, const std::vector<std::size_
   if (!(scale_ > 0)) scale_ = 1;
   values_ = (values.array() - shift_) / scale_;
   for (Eigen::Index j = 0; j < parameters; ++j) {
-    const Eigen::MatrixXd rows = places.col(j).replicate(1, count);
+    const Eigen::MatrixXd rows = points.col(j).replicate(1, count);
     squares_.emplace_back((rows - rows.transpose()).array().square());
   }
   Eigen::VectorXd start = Eigen::VectorXd::Zero(parameters + 3);
@@ -58,7 +58,7 @@ Eigen::MatrixXd Surrogate::correlation(const Eigen::MatrixXd& a, const Eigen::Ma
 }
 
 void Surrogate::prepare(const Eigen::VectorXd& logarithms) {
-  const Eigen::Index parameters = places_.cols();
+  const Eigen::Index parameters = points_.cols();
   const Eigen::ArrayXd bounded = logarithms.array().max(-8).min(8);
   lengths_ = bounded.head(parameters).exp();
   process_ = std::exp(2 * bounded[parameters]);
@@ -70,7 +70,7 @@ void Surrogate::prepare(const Eigen::VectorXd& logarithms) {
   Eigen::MatrixXd covariance = process_ * matern(squares).matrix() + shared_ * same_specimen_;
   covariance.diagonal().array() += own_ + 1e-8;
   factor_.compute(covariance);
-  const Eigen::MatrixXd terms = trend_at(places_);
+  const Eigen::MatrixXd terms = trend_at(points_);
   solved_trend_ = factor_.solve(terms);
   information_.compute(terms.transpose() * solved_trend_);
   trend_ = information_.solve(solved_trend_.transpose() * values_);
@@ -81,7 +81,7 @@ void Surrogate::prepare(const Eigen::VectorXd& logarithms) {
 
 double Surrogate::cost(const Eigen::VectorXd& logarithms) {
   prepare(logarithms);
-  const Eigen::Index parameters = places_.cols();
+  const Eigen::Index parameters = points_.cols();
   const double determinant = factor_.matrixLLT().diagonal().array().abs().log().sum() +
                              information_.matrixLLT().diagonal().array().abs().log().sum();
   // Priors: lengths about the edge of the cube by a factor of 2; deviations about a third of that of the values by 4.
@@ -91,11 +91,11 @@ double Surrogate::cost(const Eigen::VectorXd& logarithms) {
   return std::isfinite(found) ? found : 1e300;
 }
 
-Prediction Surrogate::at(const Eigen::MatrixXd& places, std::size_t of_specimens) const {
+Prediction Surrogate::at(const Eigen::MatrixXd& points, std::size_t of_specimens) const {
   // The mean of n effects has the covariance shared/n with each of them, and with itself.
   const double of_effects = of_specimens > 0 ? shared_ / double(of_specimens) : 0;
-  const Eigen::MatrixXd between = (process_ * correlation(places, places_)).array() + of_effects;
-  const Eigen::MatrixXd terms = trend_at(places);
+  const Eigen::MatrixXd between = (process_ * correlation(points, points_)).array() + of_effects;
+  const Eigen::MatrixXd terms = trend_at(points);
   const Eigen::MatrixXd half = factor_.matrixL().solve(between.transpose());
   const Eigen::MatrixXd rest = (terms - between * solved_trend_).transpose();
   const Eigen::MatrixXd of_trend = information_.matrixL().solve(rest);

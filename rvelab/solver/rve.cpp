@@ -299,10 +299,10 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
-  for (std::size_t place = 0; place < size(); ++place) {
-    const std::size_t index = state.index_in_specimen(place);
+  for (std::size_t row = 0; row < size(); ++row) {
+    const std::size_t index = state.index_in_specimen(row);
     if (!velocity[index].allFinite() || !spin[index].allFinite())
-      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(state.model().id[place]) +
+      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(state.model().id[row]) +
                        " is not finite; give finite numbers");
   }
   apply_deferred_strain(state).set_velocities(velocity, spin);

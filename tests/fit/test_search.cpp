@@ -35,7 +35,7 @@ struct Laboratory {
     outputs = unknowns == 2 ? 2 : 4;
     for (std::size_t s = 0; s < count; ++s)
       for (std::size_t k = 0; k < outputs; ++k) effects.push_back(std::sqrt(0.5) * scatter[k] * normal(random));
-    for (double& place : truth) place = 0.1 + 0.8 * random();
+    for (double& point : truth) point = 0.1 + 0.8 * random();
     const auto mean = material(truth);
     for (std::size_t k = 0; k < outputs; ++k) {
       const double error = scatter[k] / std::sqrt(double(data_tests));
@@ -55,19 +55,19 @@ struct Laboratory {
       problem.targets[k].error = error;
     }
   }
-  std::vector<fit::Answer> tests(const std::vector<fit::Trial>& trials) {
+  std::vector<fit::Answer> tests(const std::vector<fit::Candidate>& candidates) {
     std::vector<fit::Answer> answers;
-    for (const fit::Trial& trial : trials) {
-      auto answer = material(trial.place);
+    for (const fit::Candidate& candidate : candidates) {
+      auto answer = material(candidate.point);
       answer.resize(outputs);
       for (std::size_t k = 0; k < outputs; ++k)
-        answer[k] += effects[trial.specimen * outputs + k] + std::sqrt(0.5) * scatter[k] * normal(random);
+        answer[k] += effects[candidate.specimen * outputs + k] + std::sqrt(0.5) * scatter[k] * normal(random);
       answers.push_back(answer);
     }
     return answers;
   }
   fit::Finding found() {
-    return fit::search(problem, [this](const auto& trials) { return tests(trials); });
+    return fit::search(problem, [this](const auto& candidates) { return tests(candidates); });
   }
 
   Uniform random;
@@ -130,7 +130,7 @@ TEST_CASE("Better targets give narrower intervals, and a search is the same each
   };
   CHECK(width(narrow) < width(wide));
   CHECK(again.found().sample == wide.sample);
-  CHECK(wide.trials.size() == fit::usual_tests(2));
+  CHECK(wide.candidates.size() == fit::usual_tests(2));
 }
 
 TEST_CASE("Of 20 curves with two hidden parameters 18 lie in their intervals", "[slow]") {
@@ -150,13 +150,13 @@ TEST_CASE("Of 20 curves with two hidden parameters 18 lie in their intervals", "
     problem.tests = fit::usual_tests(2);
     problem.sample = 600;
     for (int k = 1; k <= 12; ++k) problem.targets.push_back({"y", curve(truth, 0.1 * k), 0.01, 0});
-    const fit::Finding found = fit::search(problem, [&](const std::vector<fit::Trial>& trials) {
+    const fit::Finding found = fit::search(problem, [&](const std::vector<fit::Candidate>& candidates) {
       std::vector<fit::Answer> answers;
-      for (const fit::Trial& trial : trials) {
+      for (const fit::Candidate& candidate : candidates) {
         fit::Answer answer;
         const double level = 0.02 * normal(random), tilt = 0.02 * normal(random);
         for (int k = 1; k <= 12; ++k)
-          answer.push_back(curve(trial.place, 0.1 * k) * factors[trial.specimen] + level + tilt * 0.1 * k);
+          answer.push_back(curve(candidate.point, 0.1 * k) * factors[candidate.specimen] + level + tilt * 0.1 * k);
         answers.push_back(answer);
       }
       return answers;
@@ -171,13 +171,14 @@ TEST_CASE("Targets out of reach are told by the misfit, and tests that fail are 
   laboratory.problem.targets[0].value = 80;  // degrees, beyond any of its materials
   CHECK(laboratory.found().misfit > 2);
   Laboratory failing(2, 3);
-  const fit::Finding found = fit::search(failing.problem, [&](const auto& trials) {
-    auto answers = failing.tests(trials);
+  const fit::Finding found = fit::search(failing.problem, [&](const auto& candidates) {
+    auto answers = failing.tests(candidates);
     for (std::size_t k = 0; k < answers.size(); ++k)
-      if (trials[k].number % 4 == 0) answers[k].clear();
+      if (candidates[k].number % 4 == 0) answers[k].clear();
     return answers;
   });
   CHECK(found.misfit < 2);
   CHECK_THROWS_AS(
-      fit::search(failing.problem, [](const auto& trials) { return std::vector<fit::Answer>(trials.size()); }), Error);
+      fit::search(failing.problem, [](const auto& candidates) { return std::vector<fit::Answer>(candidates.size()); }),
+      Error);
 }

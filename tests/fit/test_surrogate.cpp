@@ -32,8 +32,8 @@ TEST_CASE("A sample of a Gaussian likelihood has its mean, its deviations and it
   const Eigen::Matrix2d inverse = covariance.inverse();
   const Eigen::Vector2d centre(0.4, 0.6);
   const Eigen::MatrixXd sample = fit::sampled(
-      [&](const Eigen::MatrixXd& places) {
-        const Eigen::MatrixXd off = places.rowwise() - centre.transpose();
+      [&](const Eigen::MatrixXd& points) {
+        const Eigen::MatrixXd off = points.rowwise() - centre.transpose();
         return Eigen::VectorXd(-0.5 * (off * inverse).cwiseProduct(off).rowwise().sum());
       },
       2, 4000, 1);
@@ -51,7 +51,7 @@ TEST_CASE("A sample of a Gaussian likelihood has its mean, its deviations and it
 
 TEST_CASE("A flat likelihood leaves the uniform prior") {
   const Eigen::MatrixXd sample = fit::sampled(
-      [](const Eigen::MatrixXd& places) { return Eigen::VectorXd(Eigen::VectorXd::Zero(places.rows())); }, 1, 2000, 3);
+      [](const Eigen::MatrixXd& points) { return Eigen::VectorXd(Eigen::VectorXd::Zero(points.rows())); }, 1, 2000, 3);
   CHECK(sample.mean() == Approx(0.5).margin(0.03));
   CHECK(fit::quantile(sample.col(0), 0.1) == Approx(0.1).margin(0.03));
   CHECK(fit::quantile(sample.col(0), 0.9) == Approx(0.9).margin(0.03));
@@ -66,14 +66,14 @@ TEST_CASE("A quantile lies between the values beside it") {
 
 TEST_CASE("A surrogate of a smooth function without scatter gives the function") {
   const auto function = [](double a, double b) { return 20 + 8 * (1 - std::exp(-a / 0.4)) - 3 * b * b; };
-  const Eigen::MatrixXd places = fit::halton(40, 2);
+  const Eigen::MatrixXd points = fit::halton(40, 2);
   Eigen::VectorXd values(40);
   std::vector<std::size_t> specimens;
   for (Eigen::Index k = 0; k < 40; ++k) {
-    values[k] = function(places(k, 0), places(k, 1));
+    values[k] = function(points(k, 0), points(k, 1));
     specimens.push_back(std::size_t(k) % 5);
   }
-  const fit::Surrogate surrogate(places, specimens, values);
+  const fit::Surrogate surrogate(points, specimens, values);
   Eigen::MatrixXd there(3, 2);
   there << 0.3, 0.4, 0.6, 0.7, 0.5, 0.2;
   const fit::Prediction found = surrogate.at(there);
@@ -83,14 +83,14 @@ TEST_CASE("A surrogate of a smooth function without scatter gives the function")
 TEST_CASE("A surrogate knows the mean of all specimens no better than so many specimens tell") {
   // A straight line; each of ten specimens is off by its own amount in all of its tests.
   const double effects[] = {1.1, -0.7, 0.2, -1.4, 0.9, 0.4, -0.1, 1.2, -0.8, -0.8};
-  const Eigen::MatrixXd places = fit::halton(50, 1);
+  const Eigen::MatrixXd points = fit::halton(50, 1);
   Eigen::VectorXd values(50);
   std::vector<std::size_t> specimens;
   for (Eigen::Index k = 0; k < 50; ++k) {
-    values[k] = 10 + 4 * places(k, 0) + effects[k % 10];
+    values[k] = 10 + 4 * points(k, 0) + effects[k % 10];
     specimens.push_back(std::size_t(k % 10));
   }
-  const fit::Surrogate surrogate(places, specimens, values);
+  const fit::Surrogate surrogate(points, specimens, values);
   double squares = 0;
   for (const double effect : effects) squares += effect * effect;
   const double expected = std::sqrt(squares / 9);
@@ -105,14 +105,14 @@ TEST_CASE("Of its own specimens a surrogate knows the mean well, of one alone to
   const double effects[] = {0.9, -0.4, 0.1};
   for (const std::size_t count : {std::size_t(3), std::size_t(1)}) {
     CAPTURE(count);
-    const Eigen::MatrixXd places = fit::halton(30, 1);
+    const Eigen::MatrixXd points = fit::halton(30, 1);
     Eigen::VectorXd values(30);
     std::vector<std::size_t> specimens;
     for (Eigen::Index k = 0; k < 30; ++k) {
       specimens.push_back(std::size_t(k) % count);
-      values[k] = 10 + 4 * places(k, 0) + effects[specimens.back()] + 0.05 * std::sin(37.0 * double(k));
+      values[k] = 10 + 4 * points(k, 0) + effects[specimens.back()] + 0.05 * std::sin(37.0 * double(k));
     }
-    const fit::Surrogate surrogate(places, specimens, values);
+    const fit::Surrogate surrogate(points, specimens, values);
     const Eigen::MatrixXd middle = Eigen::MatrixXd::Constant(1, 1, 0.5);
     const fit::Prediction own = surrogate.at(middle, count), any = surrogate.at(middle);
     CHECK(own.mean[0] == Approx(12 + (count == 1 ? 0.9 : 0.2)).margin(0.03));  // three standard errors

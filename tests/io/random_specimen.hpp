@@ -183,6 +183,10 @@ class RandomFill {
   void put(Image& value) {
     for (int& entry : value) put(entry);
   }
+  void put(Turn& value) {
+    put(value.w);
+    put(value.v);
+  }
   template <class Value>
   void put(std::vector<Value>& values) {
     for (Value& value : values) put(value);

@@ -44,8 +44,9 @@ class ContactColumns {
     for (std::size_t k = 0; k < shift_.size(); ++k) {
       const auto shift = table_.integer(row, shift_[k]);
       if (shift < -largest_shift || shift > largest_shift) {
-        throw InputError(table_.place(row, shift_[k]) + " is out of range; allowed: " + std::to_string(-largest_shift) +
-                         " to " + std::to_string(largest_shift) + " cells; correct the shift");
+        throw InputError(table_.location(row, shift_[k]) +
+                         " is out of range; allowed: " + std::to_string(-largest_shift) + " to " +
+                         std::to_string(largest_shift) + " cells; correct the shift");
       }
       image[k] = int(shift);
     }
@@ -110,7 +111,7 @@ Vector3 tangential_component(const CsvTable& table, std::size_t row, const Speci
   const auto column = table.column({"ft"});
   const double given = table.number(row, column);
   if (std::abs(given - computed[0]) > agreement * contact.tangential_force.stableNorm()) {
-    throw InputError(table.place(row, column) + " N: fsx and fsy give " + text(computed[0]) +
+    throw InputError(table.location(row, column) + " N: fsx and fsy give " + text(computed[0]) +
                      " N along (-n_y, n_x); allowed: equal within 1e-6; correct one or leave the column out");
   }
   return {given, 0, 0};
@@ -125,7 +126,7 @@ void check_stiffnesses(const CsvTable& table, const std::vector<Contact>& contac
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const double computed = parameters_of(specimen, contacts[row]).*stiffness;
       if (std::abs(table.number(row, column) - computed) <= agreement * std::abs(computed)) continue;
-      throw InputError(table.place(row, column) + ", " + pair_of(table, columns, row) + ": the parameters give " +
+      throw InputError(table.location(row, column) + ", " + pair_of(table, columns, row) + ": the parameters give " +
                        text(computed) + "; allowed: equal within 1e-6; " +
                        "the contacts are of other parameters: give those that belong to this file");
     }
@@ -142,7 +143,7 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
     const double overlap = overlap_of(specimen, contacts[row]);
     const double computed = normal_force_of(specimen, contacts[row]);
     if (std::abs(table.number(row, columns.fn) - computed) <= agreement * largest) continue;
-    throw InputError(table.place(row, columns.fn) + " N, " + pair_of(table, columns, row) + ": contact.law = " +
+    throw InputError(table.location(row, columns.fn) + " N, " + pair_of(table, columns, row) + ": contact.law = " +
                      name(specimen.contact.law) + " gives " + text(computed) + " N at an overlap of " + text(overlap) +
                      " m; allowed: equal within 1e-6 of the largest, " + text(largest) +
                      " N; the file is of other parameters, another cell or other particles: give those that belong "
@@ -160,7 +161,7 @@ void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, con
     });
     const auto expect = [&](double value, double factor, const char* what, const char* unit, const char* cap) {
       if (value <= factor * pressing + agreement * std::max(factor, 1e-3) * largest) return;
-      throw InputError(table.place(row) + ": " + pair_of(table, columns, row) + " has a " + what + " of " +
+      throw InputError(table.location(row) + ": " + pair_of(table, columns, row) + " has a " + what + " of " +
                        text(value) + " " + unit + "; allowed: up to " + text(factor * pressing) + " " + unit + ", " +
                        cap +
                        " times the normal force; give the parameters that belong to this file (others are put "
@@ -184,7 +185,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
   const auto grain = [&](std::size_t row, std::size_t column) {
     const auto found = index.find(table.integer(row, column));
     if (found == index.end()) {
-      throw InputError(table.place(row, column) +
+      throw InputError(table.location(row, column) +
                        " is no grain of the particle file; allowed: its ids; give the files that belong together");
     }
     return found->second;
@@ -201,12 +202,12 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
     contact.tangential_force = specimen.cell.rotation.transpose() * columns.tangential_force(row);
     contact.rolling_moment = specimen.cell.rotation.transpose() * columns.rolling_moment(row);
     if (!specimen.contact.rolling && contact.rolling_moment != Vector3::Zero()) {
-      throw InputError(table.place(row) + ": " + pair_of(table, columns, row) +
+      throw InputError(table.location(row) + ": " + pair_of(table, columns, row) +
                        " has a rolling moment; allowed: none where contact.rolling is false; give rolling parameters "
                        "(beta and eta above 0)");
     }
     if (contact.i == contact.j && contact.image == Image{}) {
-      throw InputError(table.place(row) + ": " + pair_of(table, columns, row) +
+      throw InputError(table.location(row) + ": " + pair_of(table, columns, row) +
                        " is of a grain with itself; allowed: with another grain or a shifted image; remove the row");
     }
     turn_round_if_needed(contact);
@@ -224,8 +225,9 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
   for (std::size_t k = 1; k < order.size(); ++k) {
     if (key(order[k]) == key(order[k - 1])) {
-      throw InputError(table.place(order[k]) + ": " + pair_of(table, columns, order[k]) + " is there twice (first at " +
-                       table.place(order[k - 1]) + "); allowed: once for each pair and shift; remove one");
+      throw InputError(table.location(order[k]) + ": " + pair_of(table, columns, order[k]) +
+                       " is there twice (first at " + table.location(order[k - 1]) +
+                       "); allowed: once for each pair and shift; remove one");
     }
   }
   specimen.contacts.clear();

@@ -51,7 +51,7 @@ std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Speci
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto type = table.integer(row, column);
     if (type < first || type > last) {
-      throw InputError(table.place(row, column) + " is no material; allowed: " + std::to_string(first) + " to " +
+      throw InputError(table.location(row, column) + " is no material; allowed: " + std::to_string(first) + " to " +
                        std::to_string(last) + ", the materials in their order; add the material");
     }
     index.push_back(std::int32_t(type - first));
@@ -63,7 +63,7 @@ std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Speci
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
   if (table.has("body"))
     throw InputError(
-        table.place(0) +
+        table.location(0) +
         ": the column `body` is of clumps, which tables cannot bring back: their members would move apart; "
         "allowed: a table of grains that move by themselves; keep clumps in HDF5 files");
   std::vector<std::int32_t> index(table.rows(), 0);
@@ -72,7 +72,7 @@ std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& sp
     if (several && table.has("type")) return materials_by_number(table, specimen, "type", 1);
     if (several && table.has("matId")) return materials_by_number(table, specimen, "matId", 0);
     if (specimen.materials.size() > 1) {
-      throw InputError(table.place(0) + ": there are " + std::to_string(specimen.materials.size()) +
+      throw InputError(table.location(0) + ": there are " + std::to_string(specimen.materials.size()) +
                        " materials and no column `material`; allowed: one material, or the column with a name for "
                        "each grain; add the column");
     }
@@ -89,7 +89,7 @@ std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& sp
       keys::Choices known;
       for (const auto& [name, number] : indices) known.push_back(name);
       throw InputError(
-          table.place(row, column) + " names no material; allowed: " + keys::listed(known) +
+          table.location(row, column) + " names no material; allowed: " + keys::listed(known) +
           "; correct the name, or give a TOML file with a [[material]] of that name by --material (`rvelab "
           "export --format csv` writes one)");
     }
@@ -126,8 +126,8 @@ std::vector<std::size_t> order_by_id(const CsvTable& table, const std::vector<st
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
   for (std::size_t k = 1; k < order.size(); ++k) {
     if (id[order[k]] == id[order[k - 1]]) {
-      throw InputError(table.place(order[k], table.column({"id"})) + " is there twice (first at " +
-                       table.place(order[k - 1]) + "); allowed: an id of its own for each grain; renumber one");
+      throw InputError(table.location(order[k], table.column({"id"})) + " is there twice (first at " +
+                       table.location(order[k - 1]) + "); allowed: an id of its own for each grain; renumber one");
     }
   }
   return order;
@@ -142,7 +142,7 @@ void refuse_clumps(const CsvTable& table) {
     const auto clump = table.integer(row, column);
     const auto [found, fresh] = first.emplace(clump, row);
     if (fresh || clump < 0) continue;
-    throw InputError(table.place(row, column) + " is the clump of " + table.place(found->second) +
+    throw InputError(table.location(row, column) + " is the clump of " + table.location(found->second) +
                      " too; allowed: spheres that are in no clump; replace the clumps by spheres");
   }
 }
@@ -152,7 +152,7 @@ void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
   const bool whole = !table.has("r") && !table.has("radius");
   grains.radius.push_back(table.length(row, radius) / (whole ? 2 : 1));
   if (!(grains.radius.back() > 0)) {
-    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the " +
+    throw InputError(table.location(row, radius) + " m is not positive; allowed: > 0; correct the " +
                      (whole ? "diameter" : "radius"));
   }
 }
@@ -171,7 +171,7 @@ void read_outline(const CsvTable& table, std::size_t row, Specimen& specimen) {
       },
       own, grains);
   if (!By::allowed(own))
-    throw InputError(table.place(row, last) + " m makes no " + By::name +
+    throw InputError(table.location(row, last) + " m makes no " + By::name +
                      " with the lengths before it; allowed: " + By::allowed_in_tables + "; correct them");
   const double radians = table.number(row, table.column({"angle"})) * (3.14159265358979323846 / 180);
   grains.radius.push_back(By::radius(own));
@@ -233,7 +233,7 @@ void tell_of_densities(const CsvTable& table, const Specimen& specimen, const Im
     const double held = specimen.materials[std::size_t(materials[row])].density;
     double given = 0;
     if (!parsed(table.text(row, column), given) || std::abs(given - held) <= 1e-6 * held) continue;
-    options.tell(table.place(row, column) + " kg/m3, and that of the material is " + exact(held) +
+    options.tell(table.location(row, column) + " kg/m3, and that of the material is " + exact(held) +
                  " kg/m3; the material's density is taken");
     return;
   }

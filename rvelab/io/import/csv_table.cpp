@@ -131,7 +131,7 @@ void CsvTable::read_row(std::string_view line, long number) {
   std::string remedy = "complete the row";
   if (delimiter_ == ',' && found == 2 * columns_.size())
     remedy = "if these are decimal commas, part the columns by semicolons or write points";
-  throw InputError(place(rows() - 1) + ": the row has " + std::to_string(found) +
+  throw InputError(location(rows() - 1) + ": the row has " + std::to_string(found) +
                    " cells; allowed: one for each of the header's " + std::to_string(columns_.size()) + " columns; " +
                    remedy);
 }
@@ -146,7 +146,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
   std::string with_point;
   if (cell.find(',') != std::string_view::npos) {
     if (delimiter_ == ',' && may_group_digits(cell)) {
-      throw InputError(place(row, column) +
+      throw InputError(location(row, column) +
                        " may be a decimal comma or groups of digits; allowed: a number; write a decimal point");
     }
     with_point = cell;
@@ -154,7 +154,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
     cell = with_point;
   }
   if (!parsed(cell, value) || !std::isfinite(value)) {
-    throw InputError(place(row, column) + " is not a finite number; allowed: a number; correct the cell");
+    throw InputError(location(row, column) + " is not a finite number; allowed: a number; correct the cell");
   }
   return value;
 }
@@ -173,14 +173,14 @@ std::int64_t CsvTable::integer(std::size_t row, std::size_t column) const {
   if (parsed(text(row, column), decimal) && std::abs(decimal) <= exact_up_to && decimal == std::trunc(decimal)) {
     return std::int64_t(decimal);
   }
-  throw InputError(place(row, column) + " is not a whole number; allowed: a whole number; correct the cell");
+  throw InputError(location(row, column) + " is not a whole number; allowed: a whole number; correct the cell");
 }
 
-std::string CsvTable::place(std::size_t row) const { return path_ + ":" + std::to_string(lines_[row]); }
+std::string CsvTable::location(std::size_t row) const { return path_ + ":" + std::to_string(lines_[row]); }
 
-std::string CsvTable::place(std::size_t row, std::size_t column) const {
+std::string CsvTable::location(std::size_t row, std::size_t column) const {
   const std::string name = columns_[column].empty() ? std::to_string(column + 1) : keys::shortened(columns_[column]);
-  return place(row) + ": column " + name + " = " + keys::shortened(std::string(text(row, column)));
+  return location(row) + ": column " + name + " = " + keys::shortened(std::string(text(row, column)));
 }
 
 /// Where some cells have a decimal comma and others a decimal point, one of the two groups digits.
@@ -196,7 +196,7 @@ void CsvTable::expect_one_decimal_mark() const {
   if (point == cells_.end()) return;
   const auto place_of = [&](auto cell) {
     const auto index = std::size_t(cell - cells_.begin());
-    return place(index / columns_.size(), index % columns_.size());
+    return location(index / columns_.size(), index % columns_.size());
   };
   throw InputError(place_of(comma) + " has a decimal comma, and " + place_of(point) +
                    " a decimal point; allowed: one of the two in a table; save it with one kind and without groups of "

@@ -61,9 +61,9 @@ class CsvTable {
   std::string_view text(std::size_t row, std::size_t column) const;
 
   /// "path:line: column NAME = VALUE", for messages about a cell.
-  std::string place(std::size_t row, std::size_t column) const;
+  std::string location(std::size_t row, std::size_t column) const;
   /// "path:line", for messages about a row.
-  std::string place(std::size_t row) const;
+  std::string location(std::size_t row) const;
 
   /// Edges of a rectangular cell, m, where the file states them.
   const std::optional<Vector3>& edges() const { return edges_; }

@@ -36,8 +36,8 @@ struct LammpsAtoms {
 };
 
 /// Length of a unit of LAMMPS' `units`, in m: si, cgs, micro, nano. InputError by name for the others, which state
-/// neither kilograms nor metres, or those of atoms; `place` goes before the message.
-double metres_of(const std::string& units, const std::string& place);
+/// neither kilograms nor metres, or those of atoms; `location` goes before the message.
+double metres_of(const std::string& units, const std::string& location);
 
 /// Whether a text begins as a dump does: with an ITEM.
 bool is_lammps_dump(std::string_view text);

@@ -11,14 +11,14 @@
 
 namespace rvelab::io {
 
-double metres_of(const std::string& units, const std::string& place) {
+double metres_of(const std::string& units, const std::string& location) {
   if (units == "si") return 1;
   if (units == "cgs") return 1e-2;
   if (units == "micro") return 1e-6;
   if (units == "nano") return 1e-9;
   const bool known = units == "lj" || units == "real" || units == "metal" || units == "electron";
   throw InputError(
-      place + ": the units are " + keys::shortened(printable(units)) +
+      location + ": the units are " + keys::shortened(printable(units)) +
       (units == "lj" ? ", which have no metre"
        : known       ? ", those of atoms"
                      : ", which LAMMPS does not know") +

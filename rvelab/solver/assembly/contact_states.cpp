@@ -106,7 +106,7 @@ void add_interactions(const Model& model, const Assembly& assembly, Network& net
     c.kind = a.kind;
     c.i = std::int32_t(a.i);
     c.j = std::int32_t(a.j);
-    c.image = table.image[a.place];
+    c.image = table.image[a.row];
     c.branch = a.branch;
     c.normal = a.normal;
     c.length = a.length;
@@ -141,8 +141,8 @@ template <Shape shape>
 bool some_contact_must_slip(const Model& model, const Assembly& assembly) {
   constexpr double most = 1 + 1e-6;  // a sliding contact is at its limit, give or take round-off
   const PairPlaces<shape> pair(model, assembly);
-  return std::any_of(assembly.pairs.order.begin(), assembly.pairs.order.end(), [&](std::int32_t place) {
-    const auto p = std::size_t(place);
+  return std::any_of(assembly.pairs.order.begin(), assembly.pairs.order.end(), [&](std::int32_t row) {
+    const auto p = std::size_t(row);
     const auto at = pair(p);
     if (!(at.overlap > 0)) return false;
     const ContactState c = state_of(model, assembly.pairs, p, at);
@@ -191,17 +191,17 @@ double constraints_over_motions(const Model& model, const Assembly& assembly) {
   std::vector<int> contacts(model.bodies ? model.bodies->size() : model.size(), 0);
   std::vector<std::int32_t> touching;
   touching.reserve(assembly.pairs.order.size());
-  for (const std::int32_t place : assembly.pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t row : assembly.pairs.order) {
+    const auto p = std::size_t(row);
     if (pair.is_apart(p) || !(pair(p).overlap > 0)) continue;
-    touching.push_back(place);
+    touching.push_back(row);
     ++contacts[owner(assembly.pairs.i[p])];
     ++contacts[owner(assembly.pairs.j[p])];
   }
   double constraints = 0, grip = 0, friction = 0, held = grip_of(friction);
   long counted = 0;
-  for (const std::int32_t place : touching) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t row : touching) {
+    const auto p = std::size_t(row);
     if (contacts[owner(assembly.pairs.i[p])] < 2 || contacts[owner(assembly.pairs.j[p])] < 2) continue;
     const Held by = held_by<shape, Force>(model, assembly.pairs, p, pair(p));
     if (assembly.pairs.friction[p] != friction) {

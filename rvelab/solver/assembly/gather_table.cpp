@@ -55,8 +55,8 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
   }
   const auto nothing = force_row * std::int32_t(pairs.listed);  // the first padding pair
   pairs.slots.assign(4 * std::size_t(pairs.slot_begin[blocks]), nothing);
-  for (const std::int32_t place : pairs.order) {
-    const auto q = std::size_t(place);
+  for (const std::int32_t row : pairs.order) {
+    const auto q = std::size_t(row);
     for (const std::size_t task : {as_j(std::size_t(pairs.j[q])), as_i(std::size_t(pairs.i[q]))}) {
       pairs.slots[std::size_t(next[task])] = force_row * std::int32_t(q);
       next[task] += 4;

@@ -280,7 +280,7 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
         a.kind = t.kind;
         a.i = std::size_t(t.i[k]);
         a.j = std::size_t(t.j[k]);
-        a.place = k;
+        a.row = k;
         a.branch =
             assembly.position(model, a.j) + translation(assembly.cell, t.image[k]) - assembly.position(model, a.i);
         a.length = a.branch.norm();

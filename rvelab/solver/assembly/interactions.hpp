@@ -34,7 +34,7 @@ void evaluate_interactions(const Model& model, const StepConstants& constants, A
 /// One that acts, as it lies now. Cell frame; forces and moments are those on grain j.
 struct ActingInteraction {
   int kind = 0;
-  std::size_t i, j, place;  ///< grains; where it stands in its table
+  std::size_t i, j, row;  ///< grains; where it stands in its table
   Vector3 branch, normal;
   double length, arm_i, arm_j;  ///< m
   Vector3 force;                ///< N

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<std::int32_t> inverse_of(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> inverse(order.size());
-  for (std::size_t place = 0; place < order.size(); ++place) inverse[std::size_t(order[place])] = std::int32_t(place);
+  for (std::size_t row = 0; row < order.size(); ++row) inverse[std::size_t(order[row])] = std::int32_t(row);
   return inverse;
 }
 
@@ -113,7 +113,7 @@ std::vector<std::int32_t> space_filling_order(const Cell& cell, const std::vecto
   }
   std::sort(keys.begin(), keys.end());
   std::vector<std::int32_t> order(keys.size());
-  for (std::size_t place = 0; place < keys.size(); ++place) order[place] = keys[place].second;
+  for (std::size_t row = 0; row < keys.size(); ++row) order[row] = keys[row].second;
   return order;
 }
 

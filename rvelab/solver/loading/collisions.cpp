@@ -75,9 +75,9 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
                allowed = model.options.max_overlap_ratio;
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(order[q]), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
-    const auto place = pair.within(p, known_gap);
-    const Branch &b = place.branch, &n = place.along();
-    const double overlap = place.overlap, gap = -overlap, limit = allowed * std::min(radii[i], radii[j]);
+    const auto geometry = pair.within(p, known_gap);
+    const Branch &b = geometry.branch, &n = geometry.along();
+    const double overlap = geometry.overlap, gap = -overlap, limit = allowed * std::min(radii[i], radii[j]);
     found.beyond |= !(overlap <= limit);
     found.least_kn = std::min(found.least_kn, kn[p]);
     if (gap >= 0 && gap >= known_gap) continue;  // seen when it is listed: what a restart lists must not matter
@@ -88,8 +88,9 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
       by_cell += (b.x * rate.xz + b.y * rate.yz + b.z * rate.zz) * b.z;
       by_grains += b.z * (vj[2] - vi[2]);
     }
-    if constexpr (!is_round(shape)) by_grains += place.opening_by(vi[2], vj[2]);
-    const double opening = (by_cell + by_grains) / place.along_length(), closing = -by_cell / place.along_length();
+    if constexpr (!is_round(shape)) by_grains += geometry.opening_by(vi[2], vj[2]);
+    const double opening = (by_cell + by_grains) / geometry.along_length(),
+                 closing = -by_cell / geometry.along_length();
     const double shrinks = double((closing * increment > gap) & (closing > 0));
     found.closing = std::max(found.closing, shrinks * closing);
     found.closed = std::max(found.closed, shrinks * (closing * increment - gap));
@@ -100,7 +101,7 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
     double k = kn[p], softest = k;
     if (curvature) {
       const RadiusRatios ratios = hertz_radius_ratios(model, assembly.pairs, p);
-      k *= std::sqrt(overlap > 0 ? hertz_radius_ratio(model, assembly.pairs, p, place) : ratios.largest);
+      k *= std::sqrt(overlap > 0 ? hertz_radius_ratio(model, assembly.pairs, p, geometry) : ratios.largest);
       softest *= std::sqrt(ratios.least);
     }
     found.approach += 0.5 * mass * opening * opening;
@@ -145,8 +146,8 @@ std::vector<double> resultants_in(const Model& model, const Assembly& assembly) 
   std::vector<double> force(D * model.size(), 0.0);
   const PairTable& pairs = assembly.pairs;
   if (model.sharing() == nullptr) {
-    for (const std::int32_t place : pairs.order) {
-      const auto p = std::size_t(place), i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
+    for (const std::int32_t row : pairs.order) {
+      const auto p = std::size_t(row), i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
       if (i != j) add_pair<D>(pairs, p, force.data() + D * i, force.data() + D * j);
     }
     return force;

@@ -139,14 +139,14 @@ class TermsOfPairs {
         firm_overlap_(0.25 * assembly.state.reference.overlap) {}
 
   inline __attribute__((always_inline)) PairTerms<D> operator()(std::size_t p) const {
-    decltype(pair_(p)) place{};  // of no overlap
-    if (!pair_.is_apart(p)) place = pair_(p);
-    const double overlap = place.overlap;
+    decltype(pair_(p)) geometry{};  // of no overlap
+    if (!pair_.is_apart(p)) geometry = pair_(p);
+    const double overlap = geometry.overlap;
     double ratio = 1;
     // What may come to touch may do so where its curvature is least.
     if constexpr (!is_round(shape))
-      ratio =
-          overlap > 0 ? hertz_radius_ratio(model_, pairs_, p, place) : hertz_radius_ratios(model_, pairs_, p).largest;
+      ratio = overlap > 0 ? hertz_radius_ratio(model_, pairs_, p, geometry)
+                          : hertz_radius_ratios(model_, pairs_, p).largest;
     const PairParameters q{kn_[p], kt_[p],          law_constant_ ? law_constant_[p] : 0, 0, kr_ ? kr_[p] : 0,
                            0,      cn_ ? cn_[p] : 0};
     PairTerms<D> t{rvelab::stiffness_of<Force>(model_, q, std::max(overlap, firm_overlap_), ratio)};
@@ -155,18 +155,18 @@ class TermsOfPairs {
     if (!t.touching) return t;
     t.now = rvelab::stiffness_of<Force>(model_, q, overlap, ratio);
     // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-    const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / place.length;
+    const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / geometry.length;
     t.along = 2 * t.now.normal - 4 * kt;
     t.across = 4 * kt;
-    const Branch& n = place.along();
-    t.nx = n.x / place.along_length();
-    t.ny = n.y / place.along_length();
-    if constexpr (D == 3) t.nz = n.z / place.along_length();
+    const Branch& n = geometry.along();
+    t.nx = n.x / geometry.along_length();
+    t.ny = n.y / geometry.along_length();
+    if constexpr (D == 3) t.nz = n.z / geometry.along_length();
     if constexpr (!is_round(shape)) {
-      t.reach[0] = place.reach_i;
-      t.reach[1] = place.reach_j;
-      t.turn[0] = std::abs(place.turn_i);
-      t.turn[1] = std::abs(place.turn_j);
+      t.reach[0] = geometry.reach_i;
+      t.reach[1] = geometry.reach_j;
+      t.turn[0] = std::abs(geometry.turn_i);
+      t.turn[1] = std::abs(geometry.turn_j);
     } else {
       t.stiffness = stiffness_along<D>(t.along, t.across, t.nx, t.ny, t.nz);
     }
@@ -242,8 +242,8 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_bodies(const Model& model, c
   std::vector<GrainSums<D>> sums(bodies.size());
   if constexpr (is_round(shape)) {
     const TermsOfPairs<shape, Force> terms_of(model, assembly);
-    for (const std::int32_t place : assembly.pairs.order) {
-      const auto p = std::size_t(place);
+    for (const std::int32_t row : assembly.pairs.order) {
+      const auto p = std::size_t(row);
       const PairTerms<D> t = terms_of(p);
       for (const bool as_j : {false, true}) {
         const auto g = std::size_t(as_j ? assembly.pairs.j[p] : assembly.pairs.i[p]);
@@ -296,8 +296,8 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& model, c
   const std::int32_t *grain_i = assembly.pairs.i.data(), *grain_j = assembly.pairs.j.data();
   if (model.sharing() == nullptr) {
     firmness.expect(assembly.pairs.listed);
-    for (const std::int32_t place : assembly.pairs.order) {
-      const auto p = std::size_t(place), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
+    for (const std::int32_t row : assembly.pairs.order) {
+      const auto p = std::size_t(row), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
       const PairTerms<D> t = terms_of(p);
       add<shape>(model, t, i, false, sums[i]);
       add<shape>(model, t, j, true, sums[j]);

@@ -29,8 +29,8 @@ void expect_overlaps(const OutOfBalance& balance, double limit) {
 /// Tangential springs that lose their stiffness let go; what they held is booked. `before`: their stiffnesses so far.
 void let_go_of_springs(const Model& model, const Buffer& before, Assembly& assembly) {
   PairTable& pairs = assembly.pairs;
-  for (const std::int32_t place : pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t row : pairs.order) {
+    const auto p = std::size_t(row);
     if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
     const double root = model.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
     double squared = 0;
@@ -169,8 +169,8 @@ void State::set_materials(const std::vector<Material>& materials) {
 void State::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
   begin_loading(Loading::at_rate);
   Assembly& assembly = change();
-  for (std::size_t place = 0; place < model_.size(); ++place)
-    assembly.set_velocity(model_, place, velocity[index_in_specimen(place)], spin[index_in_specimen(place)]);
+  for (std::size_t row = 0; row < model_.size(); ++row)
+    assembly.set_velocity(model_, row, velocity[index_in_specimen(row)], spin[index_in_specimen(row)]);
   assembly.state.last_step.mean_velocity.setZero();
   evaluate_forces(model_, assembly);
 }

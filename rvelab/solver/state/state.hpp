@@ -79,9 +79,9 @@ class State {
   /// With this specimen's reference force.
   double unbalanced_ratio(const OutOfBalance& balance) const;
 
-  /// Index into the specimen's grains of the grain at a place in memory.
-  std::size_t index_in_specimen(std::size_t place) const {
-    return assembly_.state.memory_order.empty() ? place : std::size_t(assembly_.state.memory_order[place]);
+  /// Index into the specimen's grains of the grain in a row of memory.
+  std::size_t index_in_specimen(std::size_t row) const {
+    return assembly_.state.memory_order.empty() ? row : std::size_t(assembly_.state.memory_order[row]);
   }
 
   Matrix3 to_lab(const Matrix3& cell_frame) const { return cell().rotation * cell_frame * cell().rotation.transpose(); }

@@ -16,9 +16,9 @@ struct Convolution {
   double weight[4], slope[4], bend[4];
 };
 
-Convolution convolution(double place, int count) {
-  const int cell = std::clamp(int(std::floor(std::clamp(place, -1.0, double(count)))), 0, count - 2);
-  const double t = place - cell;
+Convolution convolution(double position, int count) {
+  const int cell = std::clamp(int(std::floor(std::clamp(position, -1.0, double(count)))), 0, count - 2);
+  const double t = position - cell;
   if (t < 0 || t > 1) return {cell - 1, {0, 1 - t, t, 0}, {0, -1, 1, 0}, {}};
   const double t2 = t * t, t3 = t2 * t;
   Convolution c{cell - 1,
@@ -75,12 +75,12 @@ void Terrain<D>::settle(const Keys& keys) {
     keys.wrong("heights_m", "needs two heights or more along each horizontal axis");
   double steepest = 0, extent = 0;
   constexpr int parts = 4;  // of a cell of the map
-  long places = 1;
+  long points = 1;
   for (int i = 0; i < up; ++i) {
-    places *= parts * (count[i] - 1) + 1;
+    points *= parts * (count[i] - 1) + 1;
     extent = std::max(extent, spacing * (count[i] - 1));
   }
-  for (long k = 0; k < places; ++k) {
+  for (long k = 0; k < points; ++k) {
     Vec<D> r = Vec<D>::Zero(), slope;
     long rest = k;
     for (int i = 0; i < up; ++i) {

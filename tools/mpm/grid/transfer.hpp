@@ -7,16 +7,16 @@
 
 namespace mpm {
 
-/// visit(nodes, across, slope, place) for each row of three nodes along x that a point reaches. across: product of the
-/// weights along the other axes; slope: the same with the slope along one of them; place: 0, 1 or 2 along each. What is
+/// visit(nodes, across, slope, node) for each row of three nodes along x that a point reaches. across: product of the
+/// weights along the other axes; slope: the same with the slope along one of them; node: 0, 1 or 2 along each. What is
 /// linear in the weights is then summed over a row first: three nodes cost little more than one.
 template <int D, class Nodes, class Visit>
 inline void each_row(Nodes* nodes, const Grid<D>& grid, const Support<D>& s, Visit visit) {
   if constexpr (D == 2) {
     Nodes* row = nodes + (long(s.node[1] - grid.low[1]) * grid.count[0] + (s.node[0] - grid.low[0]));
     for (int j = 0; j < 3; ++j, row += grid.count[0]) {
-      const double slope[1] = {s.slope[1][j]}, place[1] = {double(j)};
-      visit(row, s.weight[1][j], slope, place);
+      const double slope[1] = {s.slope[1][j]}, node[1] = {double(j)};
+      visit(row, s.weight[1][j], slope, node);
     }
   } else {
     const long layer = long(grid.count[0]) * grid.count[1];
@@ -25,8 +25,8 @@ inline void each_row(Nodes* nodes, const Grid<D>& grid, const Support<D>& s, Vis
     for (int k = 0; k < 3; ++k) {
       for (int j = 0; j < 3; ++j) {
         const double slope[2] = {s.slope[1][j] * s.weight[2][k], s.weight[1][j] * s.slope[2][k]};
-        const double place[2] = {double(j), double(k)};
-        visit(first + k * layer + j * grid.count[0], s.weight[1][j] * s.weight[2][k], slope, place);
+        const double node[2] = {double(j), double(k)};
+        visit(first + k * layer + j * grid.count[0], s.weight[1][j] * s.weight[2][k], slope, node);
       }
     }
   }
@@ -63,11 +63,11 @@ inline void give_momentum(Grid<D>& grid, const Support<D>& support, double mass,
       first[i] -= more[j][i] * at;
     }
   }
-  each_row<D>(grid.nodes.data(), grid, support, [&](Node<D>* row, double across, const double*, const double* place) {
+  each_row<D>(grid.nodes.data(), grid, support, [&](Node<D>* row, double across, const double*, const double* node) {
     Lanes<D> momentum;
     for (int i = 0; i < lanes; ++i) {
       momentum[i] = first[i];
-      for (int j = 1; j < D; ++j) momentum[i] += more[j][i] * place[j - 1];
+      for (int j = 1; j < D; ++j) momentum[i] += more[j][i] * node[j - 1];
     }
     for (int r = 0; r < 3; ++r) {
       const double weight = support.weight[0][r] * across;

@@ -28,7 +28,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string place(const std::string& path, const toml::node* node) {
+std::string location(const std::string& path, const toml::node* node) {
   const auto line = node == nullptr ? 0 : node->source().begin.line;
   return line == 0 ? path + ": " : path + ":" + std::to_string(line) + ": ";
 }
@@ -61,11 +61,11 @@ const toml::node* Keys::get(const std::string& name) {
 }
 
 void Keys::wrong(const std::string& name, const std::string& message) const {
-  throw InputError(place(path_, table_->get(name)) + dotted(name) + " " + message);
+  throw InputError(location(path_, table_->get(name)) + dotted(name) + " " + message);
 }
 
 void Keys::missing(const std::string& name, const std::string& remedy) {
-  if (missing_.empty()) missing_ = place(path_, table_) + "the key " + dotted(name) + " is missing; " + remedy;
+  if (missing_.empty()) missing_ = location(path_, table_) + "the key " + dotted(name) + " is missing; " + remedy;
 }
 
 double Keys::within(const std::string& name, const toml::node& value, const Range& range) const {
@@ -258,7 +258,7 @@ std::vector<Keys> Keys::tables(const std::string& name) {
 }
 
 std::string Keys::unknown(const std::string& name, const toml::node& node, const std::string& nearest) const {
-  return place(path_, &node) + "unknown key " + dotted(name) + "; the nearest known key is " + nearest +
+  return location(path_, &node) + "unknown key " + dotted(name) + "; the nearest known key is " + nearest +
          "; correct the name or remove it";
 }
 

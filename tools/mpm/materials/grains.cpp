@@ -88,10 +88,10 @@ void Grains<D>::apply_in_parts(Point<D>& point, std::int64_t id, const Mat<D>& g
       continue;
     }
     if (status < RVELAB_OK) {
-      std::ostringstream place;
-      place << point.position.transpose();
-      throw std::runtime_error(std::string(rvelab_status_name(status)) + ", at the material point at " + place.str() +
-                               " m: " + rvelab_last_error());
+      std::ostringstream position;
+      position << point.position.transpose();
+      throw std::runtime_error(std::string(rvelab_status_name(status)) + ", at the material point at " +
+                               position.str() + " m: " + rvelab_last_error());
     }
     ++done;
   }

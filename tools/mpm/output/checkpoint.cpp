@@ -69,11 +69,11 @@ bool holds_pool(const std::string& file, const std::string& material) {
 
 /// Files of RVEs of earlier checkpoints are of no use any more.
 template <int D>
-void remove_old_pools(const Model<D>& model, const std::filesystem::path& place) {
+void remove_old_pools(const Model<D>& model, const std::filesystem::path& directory) {
   std::set<std::string> current;
   for (const auto& [material, pool] : model.pools) current.insert(pool_name(material, model.solver.steps));
   std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(place)) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     const auto name = entry.path().filename().string();
     const bool ours = std::any_of(model.pools.begin(), model.pools.end(),
                                   [&](const auto& pool) { return holds_pool(name, pool.first); });
@@ -226,10 +226,10 @@ void read_water(Fluid<D>& water, const InputFile& file, const std::string& folde
 
 template <int D>
 void write_checkpoint(const Model<D>& model, const Progress& progress, const std::string& folder) {
-  const std::filesystem::path place(folder);
+  const std::filesystem::path directory(folder);
   const auto& solver = model.solver;
-  for (const auto& [name, pool] : model.pools) pool->write((place / pool_name(name, solver.steps)).string());
-  OutputFile file((place / "checkpoint.h5").string());
+  for (const auto& [name, pool] : model.pools) pool->write((directory / pool_name(name, solver.steps)).string());
+  OutputFile file((directory / "checkpoint.h5").string());
   std::vector<double> rows;
   for (auto point : solver.points) {
     each_field<D>(point, [&](const double* values, int count) { rows.insert(rows.end(), values, values + count); });
@@ -262,14 +262,14 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   if (solver.rocks) write_rocks<D>(solver, file);
   for (const auto& group : solver.groups) group.material->save(file, group.name);
   file.publish(true);
-  remove_old_pools<D>(model, place);
+  remove_old_pools<D>(model, directory);
 }
 
 template <int D>
 void read_checkpoint(Model<D>& model, Progress& progress, const std::string& folder) {
-  const std::filesystem::path place(folder);
+  const std::filesystem::path directory(folder);
   auto& solver = model.solver;
-  const InputFile file((place / "checkpoint.h5").string());
+  const InputFile file((directory / "checkpoint.h5").string());
   const auto rows = file.read("points");
   std::size_t at = 0, width = 0;
   Point<D> any;
@@ -319,7 +319,7 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   const auto watched = file.read_whole("watched");
   model.watched.assign(watched.begin(), watched.end());
   for (auto& [name, pool] : model.pools) {
-    const auto path = place / pool_name(name, solver.steps);
+    const auto path = directory / pool_name(name, solver.steps);
     if (!std::filesystem::exists(path)) {
       throw InputError(path.string() +
                        ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");

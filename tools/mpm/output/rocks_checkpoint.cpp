@@ -104,11 +104,11 @@ void write_rocks(const Solver<D>& solver, OutputFile& file) {
   put("ghost_radii_m", rocks.balls);
   put("surface_forces_N", collected([&](const auto& visit) {
         for (std::size_t k = 0; k < rocks.pressed.size(); ++k) {
-          for (std::size_t place = 0; place < rocks.pressed[k].size(); ++place) {
-            if (rocks.pressed[k][place].isZero(0)) continue;
+          for (std::size_t outline_point = 0; outline_point < rocks.pressed[k].size(); ++outline_point) {
+            if (rocks.pressed[k][outline_point].isZero(0)) continue;
             visit(double(k));
-            visit(double(place));
-            for (const double x : rocks.pressed[k][place]) visit(x);
+            visit(double(outline_point));
+            for (const double x : rocks.pressed[k][outline_point]) visit(x);
           }
         }
       }));
@@ -153,12 +153,12 @@ void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& fol
   const auto forces = file.read("surface_forces_N");
   rocks.pressed.assign(rocks.all.size(), {});
   for (Taker take(forces, other); take.more();) {
-    const auto rock = std::size_t(take()), place = std::size_t(take());
+    const auto rock = std::size_t(take()), outline_point = std::size_t(take());
     if (rock >= rocks.all.size()) Taker({}, other)();
     const auto& outline = rocks.outline(rocks.all[rock].shape, outline_spacing * solver.grid.cell.minCoeff());
-    if (place >= outline.size()) Taker({}, other)();
+    if (outline_point >= outline.size()) Taker({}, other)();
     rocks.pressed[rock].resize(outline.size(), Vec<D>::Zero());
-    for (double& x : rocks.pressed[rock][place]) x = take();
+    for (double& x : rocks.pressed[rock][outline_point]) x = take();
   }
   rocks.balls = file.read("ghost_radii_m");
   if (rocks.soil.ghosts && rocks.balls.size() != solver.points.size()) Taker({}, other)();

@@ -7,8 +7,9 @@
 
 namespace mpm {
 
-/// The part of a point's domain where inside(place) is not true, by 6 places along each axis: the point becomes that
-/// part, at its centre of mass. False: there is less than a twentieth, or its centre lies inside (soil around a cap).
+/// The part of a point's domain where inside(position) is not true, by 6 positions along each axis: the point becomes
+/// that part, at its centre of mass. False: there is less than a twentieth, or its centre lies inside (soil around a
+/// cap).
 template <int D, class Inside>
 bool cut_point(Point<D>& point, const Inside& inside) {
   constexpr int along = 6;
@@ -16,13 +17,13 @@ bool cut_point(Point<D>& point, const Inside& inside) {
   long outside = 0, all = 1;
   for (int i = 0; i < D; ++i) all *= along;
   for (long k = 0; k < all; ++k) {
-    Vec<D> place = point.position;
+    Vec<D> position = point.position;
     long rest = k;
     for (int i = 0; i < D; ++i, rest /= along) {
-      place[i] += (double(rest % along) + 0.5 - 0.5 * along) * 2 / along * point.half[i];
+      position[i] += (double(rest % along) + 0.5 - 0.5 * along) * 2 / along * point.half[i];
     }
-    if (inside(place)) continue;
-    sum += place;
+    if (inside(position)) continue;
+    sum += position;
     ++outside;
   }
   if (outside == all) return true;

@@ -17,8 +17,8 @@ bool above_ground(const Bodies<D>& bodies, Point<D>& point, double grain) {
     const auto* ground = std::get_if<Terrain<D>>(&body.shape);
     if (ground == nullptr) continue;
     Vec<D> outward;
-    const auto under = [&](const Vec<D>& place) {
-      return ground->distance(place - body.centre, outward, point.half) < 0;
+    const auto under = [&](const Vec<D>& position) {
+      return ground->distance(position - body.centre, outward, point.half) < 0;
     };
     if (grain > 0 && under(point.position)) return false;
     if (grain > 0) continue;
@@ -35,8 +35,8 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
     Vec<D> outward;
     const double depth = -body.distance(point.position - body.centre, outward, point.half);
     if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
-    const std::vector<double> place(point.position.data(), point.position.data() + D);
-    throw InputError(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
+    const std::vector<double> position(point.position.data(), point.position.data() + D);
+    throw InputError(region_name(scene, region) + ": its point at " + text_of(position) + " m would lie inside body." +
                      body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
                      ", which then holds what is inside");
   }
@@ -44,10 +44,10 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
 
 /// One point, which fills a box of these sides (m). grain: m, its radius; 0: of a box.
 template <int D>
-void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& place, const Vec<D>& side, double grain,
+void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& position, const Vec<D>& side, double grain,
          Solver<D>& solver) {
   Point<D> point;
-  point.position = point.first = place;
+  point.position = point.first = position;
   point.velocity = vector_of<D>(region.velocity);
   point.half = 0.5 * side;
   point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
@@ -57,18 +57,18 @@ void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& place, c
 }
 
 template <int D>
-bool outside(const RegionOfScene& region, const Vec<D>& place) {
+bool outside(const RegionOfScene& region, const Vec<D>& position) {
   if (!region.ellipsoid) return false;
   const Vec<D> low = vector_of<D>(region.lower), high = vector_of<D>(region.upper);
-  return (2 * place - low - high).cwiseQuotient(high - low).squaredNorm() > 1;
+  return (2 * position - low - high).cwiseQuotient(high - low).squaredNorm() > 1;
 }
 
-/// m, of a box that fills space with its like: the number of the one where a place is, x fastest.
+/// m, of a box that fills space with its like: the number of the one where a position is, x fastest.
 template <int D>
-long number_at(const RegionOfScene& region, const Filling& filling, const Vec<D>& place) {
+long number_at(const RegionOfScene& region, const Filling& filling, const Vec<D>& position) {
   long number = 0;
   for (int i = D - 1; i >= 0; --i) {
-    const double at = (place[i] - region.lower[std::size_t(i)]) / filling.side[std::size_t(i)];
+    const double at = (position[i] - region.lower[std::size_t(i)]) / filling.side[std::size_t(i)];
     const long count = filling.count[std::size_t(i)];
     number = number * count + std::clamp(long(std::floor(at)), 0L, count - 1);
   }
@@ -90,10 +90,10 @@ void join(const std::vector<Point<D>>& slivers, const RegionOfScene& region, con
     const auto middle = [&](const Point<D>& of) -> Vec<D> {
       return (of.volume * of.position + sliver.volume * sliver.position) / (of.volume + sliver.volume);
     };
-    const auto in_rock = [&](const Vec<D>& place) {
+    const auto in_rock = [&](const Vec<D>& position) {
       const auto& rocks = *solver.rocks;
       return std::any_of(rocks.all.begin(), rocks.all.end(),
-                         [&](const auto& rock) { return rocks.distance(rock, place, 0) < 0; });
+                         [&](const auto& rock) { return rocks.distance(rock, position, 0) < 0; });
     };
     for (long n = 0; n < (D == 2 ? 9 : 27); ++n) {
       const long steps[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
@@ -139,16 +139,16 @@ void fill_all(const Scene& scene, const RegionOfScene& region, Solver<D>& solver
   const std::size_t first = solver.points.size();
   std::vector<Point<D>> slivers;
   for (long k = 0; k < filling.total; ++k) {
-    Vec<D> place;
+    Vec<D> position;
     long rest = k;
     for (int i = 0; i < D; ++i) {
       const long count = filling.count[std::size_t(i)];
-      place[i] = region.lower[std::size_t(i)] + (double(rest % count) + 0.5) * side[i];
+      position[i] = region.lower[std::size_t(i)] + (double(rest % count) + 0.5) * side[i];
       rest /= count;
     }
-    if (outside<D>(region, place)) continue;
+    if (outside<D>(region, position)) continue;
     const std::size_t before = solver.points.size();
-    put<D>(scene, region, place, side, 0, solver);
+    put<D>(scene, region, position, side, 0, solver);
     if (!by_rocks || solver.points.size() == before || solver.points.back().volume >= least) continue;
     slivers.push_back(solver.points.back());
     solver.points.pop_back();

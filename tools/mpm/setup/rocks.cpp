@@ -75,13 +75,13 @@ void check_places(const Scene& scene, const Solver<D>& solver) {
   const auto walls = walls_at<D>(solver.grid, solver.planes, solver.bodies, 0);
   const auto& all = scene.rocks->all;
   const double size = point_size<D>(scene);
-  constexpr double most_places = 1e6;  // of the surface of a rock, a cell apart
+  constexpr double most_points = 1e6;  // of the surface of a rock, a cell apart
   for (std::size_t k = 0; k < all.size() && size > 0 && !rocks.soil.ghosts; ++k) {
     const double radius = rocks.shapes[k].bounding_radius(), cells = radius / solver.grid.cell.minCoeff();
-    const double places = D == 2 ? 2 * std::numbers::pi * cells : 4 * std::numbers::pi * cells * cells;
-    if (places <= most_places) continue;
+    const double points = D == 2 ? 2 * std::numbers::pi * cells : 4 * std::numbers::pi * cells * cells;
+    if (points <= most_points) continue;
     throw InputError(name_of(all[k], k) + ": reaches " + text_of(radius) + " m from its centre, and would have " +
-                     text_of(places) + " points of its surface, a cell apart; allowed: up to " + text_of(most_places) +
+                     text_of(points) + " points of its surface, a cell apart; allowed: up to " + text_of(most_points) +
                      "; make the rock smaller, or grid.cell_m larger");
   }
   rocks.find_candidates(walls, Vec<D>::Zero(), 0);
@@ -138,9 +138,9 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
   for (const auto& rock : rocks.all) {
     if (rocks.distance(rock, point.position, corner) < corner) near.push_back(&rock);
   }
-  return near.empty() || cut_point<D>(point, [&](const Vec<D>& place) {
+  return near.empty() || cut_point<D>(point, [&](const Vec<D>& position) {
            return std::any_of(near.begin(), near.end(),
-                              [&](const auto* rock) { return rocks.distance(*rock, place, 0) < 0; });
+                              [&](const auto* rock) { return rocks.distance(*rock, position, 0) < 0; });
          });
 }
 

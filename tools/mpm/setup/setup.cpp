@@ -343,8 +343,8 @@ void watch_points(const Scene& scene, Model<D>& model) {
   if (points.empty() && !scene.watched.empty()) {
     throw InputError("output.watched_points_m: the scene has no material points; remove the key");
   }
-  for (const auto& place : scene.watched) {
-    const Vec<D> x = vector_of<D>(place);
+  for (const auto& position : scene.watched) {
+    const Vec<D> x = vector_of<D>(position);
     const auto nearer = [&](const auto& a, const auto& b) {
       return (a.position - x).squaredNorm() < (b.position - x).squaredNorm();
     };

@@ -71,15 +71,15 @@ void SurfaceContact<D>::order_runs(const Grid<D>& grid, const Bodies<D>& bodies,
       }
     }
   }
-  std::vector<std::size_t> order(runs.size()), place(runs.size());
+  std::vector<std::size_t> order(runs.size()), rank(runs.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return level[a] < level[b]; });
   for (std::size_t k = 0; k < order.size(); ++k) {
     runs_.push_back(runs[order[k]]);
-    place[order[k]] = k;
+    rank[order[k]] = k;
   }
   const std::size_t last = runs.size() - 1;
-  for (auto& [before, after] : pairs) before = place[before], after = place[after];
+  for (auto& [before, after] : pairs) before = rank[before], after = rank[after];
   to_ = rvelab::WorkOrder(last + 1, pairs);
   for (auto& [before, after] : pairs) before = last - std::exchange(after, last - before);
   fro_ = rvelab::WorkOrder(last + 1, pairs);

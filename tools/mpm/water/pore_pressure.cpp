@@ -43,9 +43,9 @@ void PorePressure<D>::clear(const Grid<D>& grid) {
 template <int D>
 void PorePressure<D>::add(const Grid<D>& grid, const Support<D>& support, const Hat<D>& hat, double volume,
                           double porosity, double shear, double storage) {
-  // Hats: value and slope times the volume, and their place from the lowest node of the support.
+  // Hats: value and slope times the volume, and their number from the lowest node of the support.
   double value[corners], slope[corners][D];
-  int place[corners];
+  int local[corners];
   Index first, lowest;
   for (int i = 0; i < D; ++i) first[i] = support.node[i], lowest[i] = hat.node[i];
   for (int c = 0; c < corners; ++c) {
@@ -56,7 +56,7 @@ void PorePressure<D>::add(const Grid<D>& grid, const Support<D>& support, const 
       const int bit = c >> i & 1;
       node[i] = hat.node[i] + bit;
       at = at * 5 + node[i] - support.node[i] + 2;
-      place[c] = at;
+      local[c] = at;
       value[c] *= hat.weight[i][bit];
       for (int j = 0; j < D; ++j) slope[c][j] *= j == i ? (bit ? 1 : -1) / grid.cell[i] : hat.weight[i][bit];
     }
@@ -84,8 +84,8 @@ void PorePressure<D>::add(const Grid<D>& grid, const Support<D>& support, const 
         for (int c = 0; c < corners; ++c) {
           for (int a = 0; a < D; ++a) {
             const double seepage = slope[c][a] * weight;
-            columns.solid[a][place[c] - from] += value[c] * gradient[a] + seepage;
-            columns.fluid[a][place[c] - from] -= seepage;
+            columns.solid[a][local[c] - from] += value[c] * gradient[a] + seepage;
+            columns.fluid[a][local[c] - from] -= seepage;
           }
         }
       }
@@ -146,18 +146,18 @@ void PorePressure<D>::fold(const Grid<D>& grid, const Planes<D>& solid, const Pl
     }
     auto& image = folded_columns_[folded_of_[mirror.image]];
     const auto from = grid.index(mirror.node), to = grid.index(mirror.image);
-    each_near(grid, from, 2, [&](long, int place) {
+    each_near(grid, from, 2, [&](long, int local) {
       int at = 0;
       bool inside = true;
       for (int i = D - 1; i >= 0; --i) {
-        const int away = from[i] + offset(place, i) - to[i] + 2;
+        const int away = from[i] + offset(local, i) - to[i] + 2;
         inside = inside && away >= 0 && away < 5;
         at = at * 5 + away;
       }
       if (!inside) return;  // behind the plane, where no hat is
       for (int i = 0; i < D; ++i) {
-        image.solid[i][at] += mirror.sign[i] * columns_[mirror.node].solid[i][place];
-        image.fluid[i][at] += sign[i] * columns_[mirror.node].fluid[i][place];
+        image.solid[i][at] += mirror.sign[i] * columns_[mirror.node].solid[i][local];
+        image.fluid[i][at] += sign[i] * columns_[mirror.node].fluid[i][local];
       }
     });
   }
@@ -185,10 +185,10 @@ void PorePressure<D>::force(const Grid<D>& grid, long node, const std::vector<do
   for (int i = 0; i < D; ++i) solid[i] = fluid[i] = 0;
   if (!used_[node]) return;
   const auto& columns = with_mirrors ? folded(node) : columns_[node];
-  each_near(grid, grid.index(node), 2, [&](long hat, int place) {
+  each_near(grid, grid.index(node), 2, [&](long hat, int local) {
     for (int i = 0; i < D; ++i) {
-      solid[i] += columns.solid[i][place] * p[hat];
-      fluid[i] += columns.fluid[i][place] * p[hat];
+      solid[i] += columns.solid[i][local] * p[hat];
+      fluid[i] += columns.fluid[i][local] * p[hat];
     }
   });
 }

@@ -123,10 +123,10 @@ class PorePressure {
     over_nodes(grid, workers, [&](long at, const Index& node) {
       if (roles[at] == Role::none) return;
       double sum = 0;
-      each_near(grid, node, 2, [&](long other, int place) {
+      each_near(grid, node, 2, [&](long other, int local) {
         if (!used_[other]) return;
         const auto& c = columns_[other];
-        const int mine = reach - 1 - place;  // of this node in the other's window
+        const int mine = reach - 1 - local;  // of this node in the other's window
         const auto [solid, fluid] = velocity(other);
         for (int i = 0; i < D; ++i) sum += c.solid[i][mine] * solid[i] + c.fluid[i][mine] * fluid[i];
       });
@@ -180,9 +180,9 @@ class PorePressure {
     const bool straight = period_[0] == 0;
     const int first = straight ? std::max(-far, grid.low[0] - node[0]) : -far;
     const int last = straight ? std::min(far, grid.low[0] + grid.count[0] - 1 - node[0]) : far;
-    int place = far;  // of the middle of a row
+    int local = far;  // of the middle of a row
     for (int k = -top; k <= top; ++k) {
-      for (int j = -far; j <= far; ++j, place += width) {
+      for (int j = -far; j <= far; ++j, local += width) {
         Index at = node;
         at[1] += j;
         if constexpr (D == 3) at[2] += k;
@@ -191,20 +191,20 @@ class PorePressure {
           at[0] = grid.low[0];  // what is left of the row lies in the box
           if (!grid.contains(at)) continue;
           const long middle = grid.flat(at) + node[0] - grid.low[0];
-          for (int i = first; i <= last; ++i) visit(middle + i, place + i);
+          for (int i = first; i <= last; ++i) visit(middle + i, local + i);
           continue;
         }
         for (int i = first; i <= last; ++i) {
           Index wrapped = at;
           wrapped[0] += i;
           wrap(wrapped);
-          if (grid.contains(wrapped)) visit(grid.flat(wrapped), place + i);
+          if (grid.contains(wrapped)) visit(grid.flat(wrapped), local + i);
         }
       }
     }
   }
   /// Of a place of each_near with far = 2, along an axis.
-  static int offset(int place, int axis) { return place / (axis == 0 ? 1 : axis == 1 ? 5 : 25) % 5 - 2; }
+  static int offset(int local, int axis) { return local / (axis == 0 ? 1 : axis == 1 ? 5 : 25) % 5 - 2; }
   /// The node that this one repeats.
   void wrap(Index& node) const {
     for (int i = 0; i < D; ++i) {

@@ -70,13 +70,13 @@ void PorePressure<D>::fill_row(const Grid<D>& grid, const std::vector<Mobility>&
                                double* row) const {
   const auto node = grid.index(at);
   const int from = repeats() ? 0 : pattern / 2;  // the upper half is what is read; where nodes repeat it is no half
-  each_near(grid, node, 2, [&](long other, int place) {
+  each_near(grid, node, 2, [&](long other, int local) {
     if (!used_[other] || mobility[other * D].solid < 0) return;
     const auto& columns = folded(other);
-    const int mine = reach - 1 - place;
+    const int mine = reach - 1 - local;
     // The other's window begins here in that of the row.
     int begin = 0;
-    for (int i = D - 1; i >= 0; --i) begin = begin * 9 + offset(place, i) + 2;
+    for (int i = D - 1; i >= 0; --i) begin = begin * 9 + offset(local, i) + 2;
     for (int a = 0; a < D; ++a) {
       const auto& m = mobility[other * D + a];
       const double solid = columns.solid[a][mine], fluid = columns.fluid[a][mine];
@@ -99,7 +99,7 @@ void PorePressure<D>::fill_row(const Grid<D>& grid, const std::vector<Mobility>&
 /// Springs between this node and those that are tied to it, or that it is tied to.
 template <int D>
 void PorePressure<D>::add_ties(const Grid<D>& grid, long at, double* row) const {
-  const auto place = [&](long other) {
+  const auto local = [&](long other) {
     const auto node = grid.index(at), there = grid.index(other);
     int k = 0;
     for (int i = D - 1; i >= 0; --i) {
@@ -111,8 +111,8 @@ void PorePressure<D>::add_ties(const Grid<D>& grid, long at, double* row) const 
   };
   for (const auto& tie : ties_) {
     if (tie.node != at && tie.to != at) continue;
-    row[place(at)] += tie.stiffness;
-    row[place(tie.node == at ? tie.to : tie.node)] -= tie.stiffness;
+    row[local(at)] += tie.stiffness;
+    row[local(tie.node == at ? tie.to : tie.node)] -= tie.stiffness;
   }
 }
 
@@ -173,14 +173,14 @@ void PorePressure<D>::solve(const Grid<D>& grid, const std::vector<Mobility>& mo
       if (repeats()) {
         const int* found = matrix_.innerIndexPtr();
         std::fill(out, value + starts[k + 1], 0.0);
-        each_near(grid, grid.index(at), 4, [&](long other, int place) {
+        each_near(grid, grid.index(at), 4, [&](long other, int local) {
           if (number_[other] < k) return;
-          value[std::lower_bound(found + starts[k], found + starts[k + 1], number_[other]) - found] += row[place];
+          value[std::lower_bound(found + starts[k], found + starts[k + 1], number_[other]) - found] += row[local];
         });
         continue;
       }
-      each_near(grid, grid.index(at), 4, [&](long other, int place) {
-        if (number_[other] >= k) *out++ = row[place];
+      each_near(grid, grid.index(at), 4, [&](long other, int local) {
+        if (number_[other] >= k) *out++ = row[local];
       });
     }
   });
@@ -222,9 +222,9 @@ void PorePressure<D>::stored(const Grid<D>& grid, const std::vector<double>& p, 
     std::array<double, pattern> row{};
     add_cells(grid, node, dt, row.data());
     double sum = 0;
-    each_near(grid, node, 1, [&](long other, int place) {
+    each_near(grid, node, 1, [&](long other, int local) {
       int there = 0;
-      for (int i = 0, left = place, stride = 1; i < D; ++i, left /= 3, stride *= 9) there += (left % 3 + 3) * stride;
+      for (int i = 0, left = local, stride = 1; i < D; ++i, left /= 3, stride *= 9) there += (left % 3 + 3) * stride;
       sum += row[there] * p[other];
     });
     rate[at] = sum;
