@@ -201,6 +201,12 @@ template <class V>
 inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const SuperellipsoidPair<V>& pair, Triple<V>& guess) {
   const auto guessed = dot(guess, guess) >= 0.25;
   const V zero = V{}, one = zero + 1.0;
+  if (!any_of(guessed)) {
+    ContactsOf<V> contacts;
+    from_bodies(pair, contacts);
+    guess = contacts.n;
+    return contacts;
+  }
   const auto led = led_from(pair, chosen(guessed, guess, Triple<V>{one, zero, zero}));
   const auto grid = by_grid(pair, led.n);
   ContactsOf<V> contacts = grid.contacts;
