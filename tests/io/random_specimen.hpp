@@ -292,6 +292,8 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   specimen.state.masses.mass.resize(grain_count);
   specimen.state.masses.inverse_inertia.resize(grain_count);
   specimen.state.memory_order.resize(grain_count);
+  specimen.bodies.resize(3);
+  specimen.members.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
   each_interaction_law([&](auto, auto law) {
@@ -315,6 +317,8 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   Grains& grains = s.grains;
   grains.semi_major = grains.semi_minor = {};
   grains.orientation = {};
+  s.bodies = {};  // they know no interactions
+  s.members = {};
   for (std::size_t k = 0; k < grain_count; ++k) {
     grains.id[k] = std::int64_t(7 * k) + below(7);
     grains.material[k] = below(3);

@@ -146,6 +146,7 @@ class Change {
   static void change(Vector3& value) { change(value[2]); }
   static void change(Matrix3& value) { change(value(1, 2)); }
   static void change(Image& value) { change(value[2]); }
+  static void change(Turn& value) { change(value.w); }
   template <class Value>
   static void change(Value& value) {
     if constexpr (std::is_enum_v<Value>) {
@@ -180,6 +181,10 @@ struct SetDoubles {
   }
   void set(Matrix3& value) {
     for (int k = 0; k < 9; ++k) set(value(k / 3, k % 3));
+  }
+  void set(Turn& value) {
+    set(value.w);
+    set(value.v);
   }
   template <class Value>
   void set(std::vector<Value>& values) {
