@@ -21,7 +21,7 @@ struct GrainFraction {
   double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
-  std::optional<Clump> clump;  ///< where the recipe is of clumps: the shape of this fraction
+  std::optional<Clump> clump = {};  ///< where the recipe is of clumps: the shape of this fraction
   // Not round:
   double smallest_aspect_ratio = 1, largest_aspect_ratio = 1;  ///< b/a, every value between equally frequent
   double bedding_angle = 0,

@@ -1,10 +1,9 @@
 // How long a list may become is known before it is made, and what is too long is refused.
-#include <random>
-
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/list_size.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 #include "tests/refusal.hpp"
+#include "tests/solver/generator.hpp"
 #include "tests/specimens.hpp"
 
 using namespace rvelab;
@@ -13,26 +12,20 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-using Generator = std::mt19937_64;
-
-double uniform(Generator& generator, double low, double high) {
-  return low + (high - low) * (double(generator() >> 11) / 9007199254740992.0);
-}
-
 /// Evenly spread over decades.
 double over_decades(Generator& generator, double low, double high) {
   return low * std::pow(high / low, uniform(generator, 0, 1));
 }
 
-struct Cloud {
+struct SizedCloud {
   Cell cell;
   std::vector<double> positions, radii;
   double skin = 0;
 };
 
 /// Grains anywhere, or all in one corner, in a cell that may be long, flat and skew.
-Cloud random_cloud(Generator& generator, int dimension, int grains, double mean_radius, double slenderness) {
-  Cloud c;
+SizedCloud random_cloud(Generator& generator, int dimension, int grains, double mean_radius, double slenderness) {
+  SizedCloud c;
   c.cell.dimension = dimension;
   for (int k = 0; k < dimension; ++k) c.cell.lattice(k, k) = over_decades(generator, 1 / slenderness, slenderness);
   for (int r = 0; r < dimension; ++r)
@@ -49,7 +42,7 @@ Cloud random_cloud(Generator& generator, int dimension, int grains, double mean_
   return c;
 }
 
-std::string refusal(const Cloud& c) {
+std::string refusal(const SizedCloud& c) {
   try {
     list_pairs(c.cell, c.positions.data(), 3, c.radii, c.skin);
   } catch (const IncrementFailed& error) {
@@ -58,8 +51,8 @@ std::string refusal(const Cloud& c) {
   return "";
 }
 
-Cloud two_grains(int dimension, double edge, double radius, double skin) {
-  Cloud c;
+SizedCloud two_grains(int dimension, double edge, double radius, double skin) {
+  SizedCloud c;
   c.cell.dimension = dimension;
   c.cell.lattice = Vector3(edge, edge, edge).asDiagonal();
   c.positions = {0, 0, 0, 0.4 * edge, 0.4 * edge, dimension == 2 ? 0 : 0.3 * edge};
@@ -76,7 +69,7 @@ TEST_CASE("no list is longer than was said before it was made, in any cell, for 
     for (int trial = 0; trial < 400; ++trial) {
       const int grains = int(over_decades(generator, 1, 300));
       const double reach = over_decades(generator, 0.02, dimension == 2 ? 3 : 1);
-      const Cloud c = random_cloud(generator, dimension, grains, reach, trial % 2 == 0 ? 1.3 : 4);
+      const SizedCloud c = random_cloud(generator, dimension, grains, reach, trial % 2 == 0 ? 1.3 : 4);
       const double most = pairs_at_most(c.cell, c.positions.data(), 3, c.radii, c.skin);
       if (!(most <= allowed_pairs(c.radii.size()))) continue;
       CAPTURE(dimension, trial, grains);
@@ -93,7 +86,7 @@ TEST_CASE("what is said of a list is near its length where grains fill their cel
       // From grains as wide as the cell to thousands in it; in a cell as a run has it.
       const int grains = int(over_decades(generator, 1, 3000));
       const double radius = over_decades(generator, 0.3, 0.8) / std::pow(grains, 1.0 / dimension);
-      Cloud c = random_cloud(generator, dimension, 0, radius, 1.3);
+      SizedCloud c = random_cloud(generator, dimension, 0, radius, 1.3);
       apply_reduction(c.cell, reduced(c.cell));
       for (int g = 0; g < grains; ++g) {
         for (int k = 0; k < 3; ++k) c.positions.push_back(k < dimension ? uniform(generator, -0.5, 0.5) : 0);
@@ -125,14 +118,14 @@ TEST_CASE("grains that reach over thousands of cells are refused before anything
 
 TEST_CASE("cells that are flat, skew or no longer numbers are refused") {
   for (const int dimension : {2, 3}) {
-    Cloud flat = two_grains(dimension, 1, 0.2, 0.03);
+    SizedCloud flat = two_grains(dimension, 1, 0.2, 0.03);
     flat.cell.lattice(1, 1) = 1e-7;
     CHECK_THAT(refusal(flat), Contains("of 2 grains may need"));
-    Cloud skew = two_grains(dimension, 1, 0.2, 0.03);
+    SizedCloud skew = two_grains(dimension, 1, 0.2, 0.03);
     skew.cell.lattice(0, 1) = 1e9;
     CHECK_THAT(refusal(skew), Contains("skew"));
     for (const double edge : {1e-200, 1e200}) {
-      const Cloud beyond = two_grains(dimension, edge, 0.2 * edge, 0.03 * edge);
+      const SizedCloud beyond = two_grains(dimension, edge, 0.2 * edge, 0.03 * edge);
       CHECK_THAT(refusal(beyond), Contains("above 0 and finite"));
     }
   }

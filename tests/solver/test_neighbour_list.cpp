@@ -1,20 +1,13 @@
 // The neighbour list against brute force over images: correctness never rests on a compact cell.
 #include "tests/solver/brute_force.hpp"
 
-#include <random>
-
+#include "tests/solver/generator.hpp"
 #include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
-
-using Generator = std::mt19937_64;
-
-double uniform(Generator& generator, double low, double high) {
-  return low + (high - low) * (double(generator() >> 11) / 9007199254740992.0);
-}
 
 struct Cloud {
   Cell cell;
