@@ -75,7 +75,7 @@ TEST_CASE("The error allowed is that of its two tolerances", "[solver]") {
   CHECK(error_per_unbalance(0.01, 0, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
   // The larger of what sliding and what few contacts leave soft.
   CHECK(error_per_unbalance(1, 2, 0.3, 2) == Approx(0.4));
-  CHECK(error_per_unbalance(1, 1.1, 0.3, 2) == Approx(2 / 1.7));
+  CHECK(error_per_unbalance(1, 1.1, 0.3, 2) == Approx(1.3));
   CHECK(error_per_unbalance(1, 0.8, 0.3, 2) == Approx(2));
   CHECK(error_per_unbalance(0.4, 1, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
   CHECK(error_per_unbalance(1, 2, 0.1, 2) == error_per_unbalance(1, 2, 0.3, 2));

@@ -51,6 +51,7 @@ ALONE = {
     "share_of_directions": ("share_of_directions=1", "the stiffness of a network"),
     "stiff_factor": ("stiff_factor=0", ""),
     "least_stiffness_ratio": ("least_stiffness_ratio=0.1", ""),
+    "hyperstatic_factor": ("hyperstatic_factor=0", ""),
     "isostatic_factor, isostatic_width": ("isostatic_factor=0", ""),
     "measured_period": ("measured_period=100", "a tenth of it"),
     "changed_period": ("changed_period=1000", "not tried alone in the tests"),

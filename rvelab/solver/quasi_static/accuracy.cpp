@@ -28,7 +28,7 @@ double error_per_unbalance(double stiffness_ratio, double constraint_ratio, doub
   const double damped = std::max(1.0, damping / Damping{}.local_quasi_static);
   if (!(constraint_ratio > 0)) return damped * soft;
   const double beyond = std::max(constraint_ratio, 1.0) - 1;
-  return damped * std::max(soft, isostatic_factor / (1 + isostatic_width * beyond * beyond));
+  return damped * std::max(soft, hyperstatic_factor + isostatic_factor / (1 + isostatic_width * beyond * beyond));
 }
 
 double error_per_unbalance_of_start(double constraint_ratio) {

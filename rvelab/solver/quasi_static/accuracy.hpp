@@ -2,7 +2,7 @@
 // takes.
 //
 //   allowed = relative max(|d sigma|, 0.1 |C : d eps|) + absolute p      (two tolerances, as ODE solvers have them)
-//   error   = K p u,   K = max(1, a/0.3) max(0.4 s^-m, 2/(1 + 70 (c - 1)^2)),
+//   error   = K p u,   K = max(1, a/0.3) max(0.4 s^-m, 0.3 + 1.7/(1 + 70 (c - 1)^2)),
 //   s = |d sigma|/|C : d eps|,   m = 5/2 in the plane, 7/2 in space
 //
 // u is the unbalanced ratio at the end of the increment, p the pressure or a thousandth of the reference pressure where

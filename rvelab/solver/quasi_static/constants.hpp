@@ -98,7 +98,7 @@ constexpr long patience_of_damping = 20'000;
 
 constexpr double share_of_directions = 0.7;  ///< sums of k d^2 over those of f d, kt/kn = 1/2: 2D 0.75, 3D 0.7
 constexpr double stiff_factor = 0.4, least_stiffness_ratio = 0.4;
-constexpr double isostatic_factor = 2, isostatic_width = 70;
+constexpr double hyperstatic_factor = 0.3, isostatic_factor = 1.7, isostatic_width = 70;
 /// u of the first sub-steps of a start, over m x (1 + 2 x).
 constexpr double largest_start = 0.45;
 
