@@ -398,7 +398,7 @@ int32_t rvelab_run_stages(rvelab_pool* pool, int64_t n, const int64_t* ids, cons
                           int32_t* status);
 
 /* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
- * or made again are included. */
+ * or made again are included, and so is what trials of one committed state share, as if each had made it. */
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps);
 
 /* ---- state ----

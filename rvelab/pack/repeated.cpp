@@ -1,6 +1,8 @@
 #include "rvelab/pack/repeated.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "rvelab/error.hpp"
@@ -42,9 +44,28 @@ std::vector<Item> repeated_pairs(const std::vector<Item>& items, const Image& co
   return all;
 }
 
+/// The same with the members of each body beside its centre, not on another side of the cell.
+Specimen with_whole_bodies(Specimen s) {
+  std::vector<Image> moved(s.grains.size(), Image{0, 0, 0});
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const std::size_t last = b + 1 < s.bodies.size() ? std::size_t(s.bodies[b + 1].first) : s.grains.size();
+    const Matrix3 axes = axes_of(s.bodies[b].orientation);
+    for (auto g = std::size_t(s.bodies[b].first); g < last; ++g) {
+      const Vector3 away = s.grains.position[g] - s.bodies[b].position - axes * s.members[g].offset;
+      const Vector3 periods = s.cell.lattice.triangularView<Eigen::Upper>().solve(away);
+      for (int k = 0; k < s.cell.dimension; ++k) moved[g][std::size_t(k)] = int(std::lround(periods[k]));
+      s.grains.position[g] -= translation(s.cell, moved[g]);
+    }
+  }
+  for (Contact& c : s.contacts)
+    for (std::size_t k = 0; k < 3; ++k) c.image[k] += moved[std::size_t(c.j)][k] - moved[std::size_t(c.i)][k];
+  return s;
+}
+
 }  // namespace
 
-Specimen repeated(const Specimen& one, const Image& times) {
+Specimen repeated(const Specimen& of, const Image& times) {
+  const Specimen one = of.bodies.empty() ? of : with_whole_bodies(of);
   const int d = one.cell.dimension;
   for (int k = 0; k < d; ++k)
     if (times[k] < 1)

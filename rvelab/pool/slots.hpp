@@ -100,17 +100,21 @@ struct Slot {
 /// Books what is made for an RVE from now on, failed trials too.
 class Cost {
  public:
-  explicit Cost(Slot& slot) : slot_(slot), before_(slot.resident->rve.grain_steps_made()) {}
+  explicit Cost(Slot& slot)
+      : slot_(slot), before_(rve().grain_steps_made()), shared_before_(rve().grain_steps_shared()) {}
   ~Cost() {
-    slot_.last_grain_steps = slot_.resident->rve.grain_steps_made() - before_;
-    slot_.grain_steps.fetch_add(slot_.last_grain_steps, std::memory_order_relaxed);
+    slot_.last_grain_steps = rve().grain_steps_made() - before_;
+    slot_.grain_steps.fetch_add(slot_.last_grain_steps + rve().grain_steps_shared() - shared_before_,
+                                std::memory_order_relaxed);
   }
   Cost(const Cost&) = delete;
   Cost& operator=(const Cost&) = delete;
 
  private:
+  const Rve& rve() const { return slot_.resident->rve; }
+
   Slot& slot_;
-  std::uint64_t before_;
+  std::uint64_t before_, shared_before_;
 };
 
 /// What the ids of one process stand for. Changed only by calls that are alone in the pool: `add`, `remove` and what

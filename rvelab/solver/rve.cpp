@@ -254,6 +254,7 @@ bool Rve::cell_thin() const { return state_->is_thin(cell()); }
 std::size_t Rve::size() const { return state_->model().size(); }
 std::uint64_t Rve::grain_steps() const { return state_->assembly().state.grain_steps; }
 std::uint64_t Rve::grain_steps_made() const { return state_->grain_steps_made(); }
+std::uint64_t Rve::grain_steps_shared() const { return state_->grain_steps_shared(); }
 double Rve::reference_pressure() const { return state_->reference().pressure; }
 
 void Rve::watch(const std::atomic<bool>* stop) { state_->watch(stop); }

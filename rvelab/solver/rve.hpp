@@ -83,6 +83,9 @@ class Rve {
   std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made
   /// The same of all calls of this Rve, failed and reverted ones too: what they cost. No part of the state.
   std::uint64_t grain_steps_made() const;
+  /// Those that trials would have made besides, had each relaxed the committed state for itself: with them a cost does
+  /// not depend on what was released in between.
+  std::uint64_t grain_steps_shared() const;
 
   /// Contacts and grains in the cell frame, in the order of the specimen; after an increment that left its strain to
   /// the next sub-step, those of a copy that makes it.

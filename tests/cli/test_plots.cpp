@@ -331,7 +331,7 @@ TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") 
   here.write("sweep/sweep.csv",
              "material.friction,friction_angle_deg,friction_angle_deg_standard_error,friction_angle_deg_n\n"
              "0.1,20,0.5,5\n0.5,30,0.5,5\n");
-  expect_figure(here, "fit", "fit", "material.friction 0.5 (0.4 to 0.6); 1 tests");
+  expect_figure(here, "fit", "fit", "material.friction 0.50 (0.40 to 0.60); 1 tests");
   expect_figure(here, "fit", "sweep", "1 measure against material.friction, 2 points");
   std::filesystem::remove(here / "fit/fit.json");
   expect_refusal(here, "fit", "fit", "fit.json: is not there");

@@ -12,6 +12,7 @@
 #include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
+#include "rvelab/specimen/clumps.hpp"
 #include "tests/catch.hpp"
 #include "tests/specimens.hpp"
 
@@ -56,7 +57,8 @@ class Spoil {
  private:
   template <class Item, class Value>
   void column(const fields::Path& path, std::vector<Item>& items, const fields::Field<Item, Value>& field) {
-    if (at_++ == number_) spoil(path.text(), "[" + std::to_string(items.size() - 1), items.back().*field.member, field);
+    if (at_++ == number_ && !items.empty())
+      spoil(path.text(), "[" + std::to_string(items.size() - 1), items.back().*field.member, field);
   }
   template <class Entry, class Described>
   void spoil(const std::string& path, std::string index, Entry& entry, const Described& field) {
@@ -73,7 +75,7 @@ class Spoil {
       scalars[component_] = Scalar(value_);
       Layout::get(scalars, entry);
       const std::string separator = index.empty() ? "[" : ", ";
-      if (Layout::size == 3) index += separator + std::to_string(component_);
+      if (Layout::size == 3 || Layout::size == 4) index += separator + std::to_string(component_);
       if (Layout::size == 9)
         index += separator + std::to_string(component_ / 3) + ", " + std::to_string(component_ % 3);
       expected_ = path + index + (index.empty() ? "" : "]");
@@ -102,6 +104,15 @@ std::string refusal(int dimension, Edit edit) {
   return said;
 }
 
+/// Clumps know no interactions, so that what is read with those has none.
+Specimen two_clumps() {
+  Specimen s = empty_specimen(Shape::sphere, 0.1, linear_material(1e5, 5e4, 0.5));
+  const Clump pair = clump_of("pair", {{{-0.5, 0, 0}, 1}, {{0.5, 0, 0}, 1}}, 3);
+  add_clump(s, pair, 0.01, {-0.02, 0.003, 0}, Turn{});
+  add_clump(s, pair, 0.012, {0.02, -0.004, 0}, normalised(Turn{0.8, {0, 0.6, 0.1}}));
+  return s;
+}
+
 /// A loaded packing of spheres whose contacts hold tangential forces in space.
 Specimen sheared_spheres() {
   Rve rve = at_rest(disordered(Shape::sphere, 4, linear_material(1e5, 5e4, 0.5), Law::linear_stiffness, 0.51, 4), 1e-6);
@@ -114,8 +125,8 @@ Specimen sheared_spheres() {
 }  // namespace
 
 TEST_CASE("a number that is none, or beyond the range that its field states, is refused by the field and its index") {
-  for (const int dimension : {2, 3}) {
-    const Specimen good = readable(dimension);
+  for (const Specimen& good : {readable(2), readable(3), two_clumps()}) {
+    const int dimension = good.cell.dimension;
     REQUIRE(refusal(good).empty());
     std::size_t refused = 0, number = 0;
     for (bool last = false; !last; ++number)

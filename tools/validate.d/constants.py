@@ -43,6 +43,7 @@ ALONE = {
     "fewer_after_check": ("fewer_after_check=1", ""),
     "start_damping, start_step": ("start_damping=1,start_step=0.7", ""),
     "longest_start": ("longest_start=0", ""),
+    "longest_elastic_strain": ("longest_elastic_strain=1", "starts of spheres that are no equilibrium (test_mgis.py)"),
     "firm_factor_of_start, isostatic_factor_of_start": ("firm_factor_of_start=0.3,isostatic_factor_of_start=1.7", "not tried alone in the tests"),
     "start_margin, largest_target_of_start": ("start_margin=2,largest_target_of_start=2e-3", "low friction (tests/solver)"),
     "least_elastic_ratio": ("least_elastic_ratio=0", "starts in flow (tests/solver)"),

@@ -160,6 +160,7 @@ Begun begin_increment(State& state, const Matrix3& change, double strain, Beginn
     const TurnOfPath turn = turn_of(strain, change, made.rate);
     if (relaxes_alike(state.model().options, made, strain, turn.turns)) {
       state.take_start();
+      state.count_shared(substeps_of(made));
       return {EquilibriumCheck(state, made.not_yet_checked), turn, relaxed_by(state, made)};
     }
   }

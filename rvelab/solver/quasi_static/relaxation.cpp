@@ -112,6 +112,10 @@ bool relaxes_alike(const SolverOptions& options, const RelaxedStart& made, doubl
   return parts == made.parts() && !goes_on(made, parts, *allowed);
 }
 
+long substeps_of(const RelaxedStart& made) {
+  return long(made.parts()) * part + (made.creep_of_rolling < 0 ? 0 : creep_steps);
+}
+
 Relaxed relaxed_by(State& state, RelaxedStart& made) {
   Relaxed relaxed;
   if (made.parts() == 0) return relaxed;

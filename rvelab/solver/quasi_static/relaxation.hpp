@@ -19,6 +19,8 @@ RelaxedStart relaxed_start_of(State& state);
 Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns, RelaxedStart& relaxed_start);
 /// Whether an increment of this strain would relax as `made` was, from the same state.
 bool relaxes_alike(const SolverOptions& options, const RelaxedStart& made, double strain, bool turns);
+/// Sub-steps that it took, those of copies too.
+long substeps_of(const RelaxedStart& made);
 /// What relax_before returns, of a state that relaxed so. Measures creep_of_rolling unless it is known.
 Relaxed relaxed_by(State& state, RelaxedStart& made);
 

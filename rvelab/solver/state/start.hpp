@@ -1,6 +1,6 @@
 // What trials of one committed state begin with, where that takes work: masses that are scaled, a stress that has
-// settled. The trial that did the work leaves a copy, and those that follow begin with it, to the same bits: an implicit
-// host, or one that takes a tangent by differences, makes many trials of each state.
+// settled. The trial that did the work leaves a copy, and those that follow begin with it, to the same bits: an
+// implicit host, or one that takes a tangent by differences, makes many trials of each state.
 #pragma once
 
 #include <vector>

@@ -122,6 +122,9 @@ class State {
   /// Of all calls, failed and reverted ones too; `count` adds those of a copy that was advanced beside.
   std::uint64_t grain_steps_made() const { return grain_steps_made_; }
   void count(long substeps) { grain_steps_made_ += std::uint64_t(substeps) * model_.size(); }
+  /// Those that a trial need not make, since another of its committed state did.
+  std::uint64_t grain_steps_shared() const { return grain_steps_shared_; }
+  void count_shared(long substeps) { grain_steps_shared_ += std::uint64_t(substeps) * model_.size(); }
 
   void begin_trial(Trial::Changes changes);
   bool pending() const { return trial_.pending(); }
@@ -166,7 +169,7 @@ class State {
   SharedStart start_;
   bool released_ = false, forces_due_ = false;
   Cell strained_cell_;
-  std::uint64_t grain_steps_made_ = 0;
+  std::uint64_t grain_steps_made_ = 0, grain_steps_shared_ = 0;
   std::uint64_t last_generation_ = 1;
   DerivedValues derived_, of_other_, of_start_;  ///< of_other_: of the state of a pending trial not in `assembly_`
   Derived<RowSums> sums_;
