@@ -47,8 +47,7 @@ void set_target_ratio(State& state, double target) {
     control.target_unbalanced_ratio = state.model().options.target_unbalanced > 0 ? target : ratio_of_first_step;
   }
   if (control.target_unbalanced_ratio > 0 && control.target_unbalanced_ratio != target)
-    control.strain_per_step =
-        std::clamp(control.strain_per_step * (target / control.target_unbalanced_ratio),
+    control.strain_per_step = std::clamp(control.strain_per_step * (target / control.target_unbalanced_ratio),
                                          std::numeric_limits<double>::min(), 1.0);
   control.target_unbalanced_ratio = target;
 }
