@@ -292,7 +292,7 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   specimen.state.masses.mass.resize(grain_count);
   specimen.state.masses.inverse_inertia.resize(grain_count);
   specimen.state.memory_order.resize(grain_count);
-  specimen.bodies.resize(3);
+  specimen.bodies.resize(9);
   specimen.members.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);

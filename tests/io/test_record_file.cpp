@@ -84,7 +84,7 @@ std::map<std::string, std::vector<std::string>> documented(const std::string& re
 /// numbers here, so that one for the other is noticed.
 std::string in_readme(const io::Shape64& shape) {
   const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"},
-                                                     {5, "p"},  {6, "k"},  {7, "v"}};
+                                                     {5, "p"},  {6, "k"},  {7, "v"},  {9, "g"}};
   std::string text;
   for (const auto extent : shape) {
     const auto letter = letters.find(extent);

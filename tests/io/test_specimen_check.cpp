@@ -75,7 +75,7 @@ class Spoil {
       scalars[component_] = Scalar(value_);
       Layout::get(scalars, entry);
       const std::string separator = index.empty() ? "[" : ", ";
-      if (Layout::size == 3 || Layout::size == 4) index += separator + std::to_string(component_);
+      if (Layout::size == 3) index += separator + std::to_string(component_);
       if (Layout::size == 9)
         index += separator + std::to_string(component_ / 3) + ", " + std::to_string(component_ % 3);
       expected_ = path + index + (index.empty() ? "" : "]");
