@@ -35,8 +35,8 @@
  * wrong sign included), one-sided ones 1e-4 or more (up to 9 %; 1e-5: up to a factor of 1.9). That is C_xxxx of dense
  * discs and spheres, at rest and after strains of 1e-3 and 1e-2; tools/bench/implicit measures all of this. Or settle
  * the committed state first: after rvelab_relax(pool, id, 1e-8, ...) one-sided differences of 1e-7 to 1e-5 are within
- * 5 % of those to the other side. Trials of one committed state settle it once: fifty of 1e-6 after steps of 1e-3 take
- * a sub-step or two each (tools/bench/trials). */
+ * 5 % of those to the other side. Trials of one committed state settle it once: those of 1e-6 after steps of 1e-3 take
+ * the time of seven sub-steps each (tools/bench/trials). */
 #ifndef RVELAB_RVELAB_H
 #define RVELAB_RVELAB_H
 
