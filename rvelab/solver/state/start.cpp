@@ -24,7 +24,8 @@ void each_changed(Pairs& pairs, const Each& each) {
 
 }  // namespace
 
-void SharedStart::keep(const Assembly& assembly, const Matrix3& committed_lattice, RelaxedStart relaxed_start) noexcept {
+void SharedStart::keep(const Assembly& assembly, const Matrix3& committed_lattice,
+                       RelaxedStart relaxed_start) noexcept {
   kept_ = false;
   const Replaced* replaced = assembly.trial.replaced;
   if (replaced == nullptr || !(assembly.cell.lattice.array() == committed_lattice.array()).all()) return;
@@ -91,7 +92,8 @@ void SharedStart::take_over(Assembly& assembly) const {
 }
 
 std::size_t SharedStart::bytes() const {
-  std::size_t sum = bytes_of(list_) + bytes_of(bodies_) + touched_.capacity() + state_.list.positions.capacity() * sizeof(Vector3) +
+  std::size_t sum = bytes_of(list_) + bytes_of(bodies_) + touched_.capacity() +
+                    state_.list.positions.capacity() * sizeof(Vector3) +
                     state_.memory_order.capacity() * sizeof(std::int32_t);
   for (const Buffer* b : {&rows_, &mass_, &inverse_mass_, &inverse_inertia_}) sum += b->capacity() * sizeof(double);
   for (const Buffer& b : changed_) sum += b.capacity() * sizeof(double);
