@@ -6,9 +6,6 @@
 //                                               the same batches, million grain-steps a second by the clock
 //                                               (tools/bench/throughput)
 //   bytes SPECIMEN.h5                           of an RVE at rest, ready, with a trial pending, a grain
-#include <rvelab/rvelab.h>
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -19,23 +16,11 @@
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "tools/bench/host/measured.hpp"
 
 namespace {
 
 using namespace rvelab;
-
-/// Processor time of all threads of this process, s: other work on the machine is not in it.
-double now() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
-void expect(std::int32_t status) {
-  if (status >= RVELAB_OK) return;
-  std::fprintf(stderr, "%s: %s\n", rvelab_status_name(status), rvelab_last_error());
-  std::exit(1);
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());

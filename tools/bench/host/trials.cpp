@@ -1,28 +1,13 @@
 // What trials cost an implicit host; called by tools/bench/trials.
 //
 //   trials SPECIMEN.h5     a row for each case: name, us a call (processor time, the least of five rounds), sub-steps
-#include <rvelab/rvelab.h>
-#include <time.h>
-
 #include <algorithm>
-#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 
+#include "tools/bench/host/measured.hpp"
+
 namespace {
-
-double now() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
-void expect(std::int32_t status) {
-  if (status >= RVELAB_OK) return;
-  std::fprintf(stderr, "%s: %s\n", rvelab_status_name(status), rvelab_last_error());
-  std::exit(1);
-}
 
 class Host {
  public:
