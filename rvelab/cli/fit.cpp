@@ -1,4 +1,5 @@
 // rvelab fit: parameters whose tests give what was measured; without a target a sweep. Declared in command.hpp.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -7,13 +8,12 @@
 #include <optional>
 
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/ensemble.hpp"
+#include "rvelab/cli/fit_input.hpp"
 #include "rvelab/cli/fit_report.hpp"
 #include "rvelab/cli/fit_tests.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/search.hpp"
-#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
@@ -21,105 +21,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct FitArguments {
-  std::string protocol;
-  std::vector<std::string> specimens, more, settings, vary, targets, curves;
-  std::optional<std::string> recipe;
-  std::optional<long> count, tests, batch;
-  std::string folder;
-  unsigned threads = 0;
-  bool same_specimens = false, force = false, resume = false, json = false;
-};
-
-/// "data.csv@50e3": a file and its pressure.
-std::vector<MeasuredCurve> measured_curves(const std::vector<std::string>& words) {
-  std::vector<MeasuredCurve> curves;
-  for (const std::string& word : words) {
-    const auto at = word.rfind('@');
-    double pressure = 0;
-    if (at != std::string::npos) {
-      std::istringstream text(word.substr(at + 1));
-      if (!(text >> pressure) || !text.eof() || !(pressure > 0))
-        throw InputError("--curve " + word + " has no pressure behind @; allowed: FILE.csv@pressure in Pa");
-    }
-    for (fit::Curve& curve : fit::read_curves(word.substr(0, at))) curves.push_back({std::move(curve), pressure});
-  }
-  return curves;
+std::string text_of(const std::string& path) {
+  std::ifstream input(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(input), {});
 }
 
-void read_specimens(FitSetup& setup, const FitArguments& arguments) {
-  auto words = arguments.specimens;
-  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
-  if (arguments.recipe.has_value() == !words.empty())
-    throw InputError(std::string("fit: ") +
-                     (words.empty() ? "no specimen is given" : "--recipe and --specimen are both given") +
-                     "; allowed: --specimen 'S_*.h5', or --recipe RECIPE with --count; give one of them");
-  if (arguments.recipe && arguments.same_specimens)
-    throw InputError(
-        "--same-specimens is given with --recipe, which packs other specimens; allowed: with --specimen; "
-        "leave it out, or give the specimens that were measured");
-  setup.same_specimens = arguments.same_specimens;
-  if (arguments.recipe) {
-    setup.recipe = input_path(*arguments.recipe, InputKind::recipe);
-    setup.specimen_count = std::size_t(arguments.count.value_or(5));
-    return;
+/// The tests as their protocols and measured points say.
+Json described(const std::vector<ComparedTest>& tests) {
+  Json list = Json::array();
+  for (const ComparedTest& test : tests) {
+    Json one{{"name", test.name},         {"protocol", text_of(test.protocol)},
+             {"settings", test.settings}, {"targets", Json::array()},
+             {"curves", Json::array()},   {"predict", test.predict}};
+    for (const fit::ScalarTarget& target : test.targets)
+      one["targets"].push_back({target.measure, target.value, target.error});
+    for (const fit::Curve& curve : test.curves)
+      one["curves"].push_back({curve.name, curve.abscissa, curve.x, curve.y, curve.error});
+    list.push_back(one);
   }
-  if (arguments.count) throw InputError("--count is given without --recipe; allowed: with --recipe; leave it out");
-  setup.files = files_of(words);
-  for (const std::string& file : setup.files) setup.specimens.push_back(io::read_specimen(file));
-  setup.specimen_count = setup.specimens.size();
-}
-
-FitSetup setup_of(const FitArguments& arguments) {
-  FitSetup setup;
-  setup.protocol = protocol_path(arguments.protocol);
-  setup.settings = arguments.settings;
-  for (const std::string& text : arguments.vary) setup.parameters.push_back(fit::parsed_parameter(text));
-  for (const std::string& text : arguments.targets) setup.targets.push_back(fit::parsed_target(text));
-  setup.curves = measured_curves(arguments.curves);
-  if (setup.parameters.empty())
-    throw InputError("fit: nothing is varied; allowed: --vary KEY=low:high, up to 8 of them; give one");
-  if (setup.parameters.size() > 8) throw InputError("fit: more than 8 keys are varied; allowed: 8; leave some out");
-  const bool sweep = setup.targets.empty() && setup.curves.empty();
-  if (sweep && arguments.same_specimens)
-    throw InputError("--same-specimens is given without a target; allowed: with --target or --curve; leave it out");
-  for (const fit::Parameter& parameter : setup.parameters) {
-    if (sweep && parameter.grid == 0)
-      throw InputError("--vary " + parameter.key +
-                       " has no number of values, and no target is given; allowed: "
-                       "KEY=low:high:n for a sweep, or --target or --curve for a fit");
-    if (!sweep && parameter.grid != 0)
-      throw InputError("--vary " + parameter.key +
-                       " has a number of values; allowed: without a target only; leave "
-                       "it out");
-  }
-  const auto add_pressure = [&](double pressure) {
-    if (setup.pressure_number(pressure) == setup.pressures.size()) setup.pressures.push_back(pressure);
-  };
-  for (const fit::ScalarTarget& target : setup.targets) add_pressure(target.pressure);
-  for (const MeasuredCurve& curve : setup.curves) add_pressure(curve.pressure);
-  if (sweep) add_pressure(0);
-  read_specimens(setup, arguments);
-  expect_runnable(setup);
-  return setup;
+  return list;
 }
 
 /// What a folder was made for, so that --resume goes on with nothing else.
 std::string described(const FitArguments& arguments, const FitSetup& setup) {
-  const auto text_of = [](const std::string& path) {
-    std::ifstream input(path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(input), {});
-  };
-  Json json{{"protocol", text_of(setup.protocol)},
-            {"settings", setup.settings},
-            {"vary", arguments.vary},
-            {"targets", arguments.targets},
-            {"curves", arguments.curves},
-            {"specimens", setup.files},
-            {"recipe", setup.recipe.empty() ? "" : text_of(setup.recipe)},
-            {"specimen_count", setup.specimen_count},
-            {"batch", arguments.batch.value_or(8)}};
-  if (arguments.same_specimens) json["same_specimens"] = true;
+  Json vary = Json::array();
+  for (const fit::Parameter& parameter : setup.parameters)
+    vary.push_back({parameter.key, parameter.low, parameter.high, parameter.logarithmic, parameter.grid});
+  const Json json{{"settings", setup.settings},
+                  {"vary", vary},
+                  {"tests", described(setup.tests)},
+                  {"specimens", setup.files},
+                  {"same_specimens", setup.same_specimens},
+                  {"recipe", setup.recipe.empty() ? "" : text_of(setup.recipe)},
+                  {"specimen_count", setup.specimen_count},
+                  {"batch", arguments.batch.value_or(8)}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -141,23 +76,33 @@ void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
     return;
   }
   io::expect_output(own, arguments.force, {}, ", --resume to go on with the fit");
-  make_folder((fs::path(arguments.folder) / "tests").string());
-  for (const auto& entry : fs::directory_iterator(fs::path(arguments.folder) / "tests"))
-    if (entry.path().extension() == ".json") fs::remove(entry.path());
+  for (const char* part : {"tests", "predictions"}) {
+    if (part == std::string("predictions") && !setup.predicts) continue;
+    make_folder((fs::path(arguments.folder) / part).string());
+    for (const auto& entry : fs::directory_iterator(fs::path(arguments.folder) / part))
+      if (entry.path().extension() == ".json") fs::remove(entry.path());
+  }
   io::publish_text(own, text);
 }
 
-/// The targets of the search: scalars, then the points of the curves.
+/// The targets of the search: scalars, then the points of the curves, of the tests that are fitted.
 std::vector<fit::Target> targets_of(const FitSetup& setup) {
   std::vector<fit::Target> targets;
-  for (const fit::ScalarTarget& each : setup.targets) {
-    std::string name = each.measure;
-    if (each.pressure > 0) name += "@" + in_words(each.pressure);
-    targets.push_back({name, each.value, each.error, -1});
+  int curves = 0;
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    for (const fit::ScalarTarget& each : test.targets) {
+      const std::string of = !test.name.empty() ? test.name + ": " : "";
+      const std::string at = test.name.empty() && each.pressure > 0 ? "@" + in_words(each.pressure) : "";
+      targets.push_back({of + each.measure + at, each.value, each.error, -1});
+    }
   }
-  for (std::size_t k = 0; k < setup.curves.size(); ++k) {
-    const auto points = fit::targets_of(setup.curves[k].curve, int(k));
-    targets.insert(targets.end(), points.begin(), points.end());
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    for (const fit::Curve& curve : test.curves) {
+      const auto points = fit::targets_of(curve, curves++, test.name);
+      targets.insert(targets.end(), points.begin(), points.end());
+    }
   }
   return targets;
 }
@@ -165,13 +110,33 @@ std::vector<fit::Target> targets_of(const FitSetup& setup) {
 fit::Answer answer_of(const FitSetup& setup, const FitResult& result) {
   fit::Answer answer;
   if (!result.failure.empty()) return answer;
-  for (const fit::ScalarTarget& target : setup.targets) {
-    for (std::size_t k = 0; k < ensemble::measures().size(); ++k)
-      if (ensemble::measures()[k].name == target.measure)
-        answer.push_back(result.measures.at(setup.pressure_number(target.pressure)).at(k));
+  std::size_t made = 0;
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    for (const fit::ScalarTarget& target : test.targets) answer.push_back(measure_of(result, made, target.measure));
+    ++made;
   }
   for (const auto& curve : result.curves) answer.insert(answer.end(), curve.begin(), curve.end());
   return answer;
+}
+
+/// Values of the parameters at a point of their unit cube.
+Eigen::VectorXd values_at(const FitSetup& setup, const Eigen::VectorXd& point) {
+  Eigen::VectorXd values = point;
+  for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = setup.parameters[std::size_t(k)].value(point[k]);
+  return values;
+}
+
+/// All tests once more, at points of the posterior, on each specimen in turn: twice as many as there are specimens, so
+/// that both scatter and parameters are in what they give.
+std::vector<FitResult> predictions(const FitArguments& arguments, const FitSetup& setup, const fit::Finding& finding) {
+  const std::size_t count = 2 * setup.specimen_count;
+  std::vector<FitTest> tests;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto row = Eigen::Index(k) * finding.sample.rows() / Eigen::Index(count);
+    tests.push_back({k, values_at(setup, finding.sample.row(row).transpose()), k % setup.specimen_count, true});
+  }
+  return made(setup, tests, arguments.folder, arguments.threads, count);
 }
 
 void run_search(const FitArguments& arguments, const FitSetup& setup) {
@@ -188,10 +153,7 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
   outcome.finding = fit::search(problem, [&](const std::vector<fit::Candidate>& candidates) {
     std::vector<FitTest> tests;
     for (const fit::Candidate& candidate : candidates) {
-      FitTest test{candidate.number, candidate.point, candidate.specimen};
-      for (Eigen::Index k = 0; k < test.values.size(); ++k)
-        test.values[k] = setup.parameters[std::size_t(k)].value(candidate.point[k]);
-      tests.push_back(test);
+      tests.push_back({candidate.number, values_at(setup, candidate.point), candidate.specimen});
     }
     std::vector<fit::Answer> answers;
     for (FitResult& result : made(setup, tests, arguments.folder, arguments.threads, problem.tests)) {
@@ -200,6 +162,7 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
     }
     return answers;
   });
+  if (setup.predicts) outcome.predictions = predictions(arguments, setup, outcome.finding);
   outcome.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report_fit(setup, outcome, arguments.folder, arguments.json);
 }
@@ -224,10 +187,10 @@ void run_sweep(const FitArguments& arguments, const FitSetup& setup) {
   report_sweep(setup, tests, results, arguments.folder, arguments.json);
 }
 
-void run_fit(const FitArguments& arguments) {
+void run_fit(FitArguments arguments) {
   const FitSetup setup = setup_of(arguments);
   prepare_folder(arguments, setup);
-  if (setup.targets.empty() && setup.curves.empty()) return run_sweep(arguments, setup);
+  if (!setup.has_targets()) return run_sweep(arguments, setup);
   run_search(arguments, setup);
 }
 
@@ -237,7 +200,10 @@ void add_fit(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("fit", "Find parameters whose tests give what was measured; without a target: a sweep");
   const auto arguments = std::make_shared<FitArguments>();
-  command.add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed test: biaxial")
+  command
+      .add_option("protocol", arguments->what,
+                  "PROTOCOL.toml, or the name of an installed test: biaxial;\nor a file of several measured tests "
+                  "([fit], [[measured]])")
       ->required();
   command
       .add_option("--vary", arguments->vary,
@@ -250,6 +216,13 @@ void add_fit(CLI::App& app) {
       ->allow_extra_args(false);
   command.add_option("--curve", arguments->curves, "measured curve, DATA.csv or DATA.csv@pressure")
       ->allow_extra_args(false);
+  command
+      .add_option("--column", arguments->columns,
+                  "column of it to read, the abscissa first: deviator_kPa, or deviator_kPa=q\nfor one that is called "
+                  "q; else all")
+      ->allow_extra_args(false);
+  command.add_option("--predict", arguments->predict,
+                     "of a file of several tests: names of those to predict instead of to fit");
   command.add_option("--specimen", arguments->specimens, "specimens that all tests share, \"S_*.h5\"")
       ->allow_extra_args(false);
   command.add_flag("--same-specimens", arguments->same_specimens,

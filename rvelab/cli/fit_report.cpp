@@ -62,17 +62,22 @@ std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
 }
 
 std::string curves_csv(const FitSetup& setup, const FitOutcome& outcome) {
-  std::string text = "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n";
-  auto column = Eigen::Index(setup.targets.size());
-  for (std::size_t k = 0; k < setup.curves.size(); ++k) {
-    const fit::Curve& curve = setup.curves[k].curve;
-    for (std::size_t point = 0; point < curve.x.size(); ++point, ++column) {
-      const Interval found = interval_of(outcome.finding.predicted.col(column));
-      text +=
-          std::to_string(k + 1) + "," + csv_cell(setup.curves[k].pressure) + "," + curve.name + "," + curve.abscissa;
-      for (const double value : {curve.x[point], curve.y[point], curve.error[point], found.mean, found.low, found.high})
-        text += "," + csv_cell(value);
-      text += "\n";
+  std::string text = "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95,test\n";
+  Eigen::Index column = 0;
+  for (const fit::Target& target : outcome.targets) column += target.curve < 0 ? 1 : 0;
+  int number = 0;
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    for (const fit::Curve& curve : test.curves) {
+      ++number;
+      for (std::size_t point = 0; point < curve.x.size(); ++point, ++column) {
+        const Interval found = interval_of(outcome.finding.predicted.col(column));
+        text += std::to_string(number) + "," + csv_cell(test.pressure) + "," + curve.name + "," + curve.abscissa;
+        for (const double value :
+             {curve.x[point], curve.y[point], curve.error[point], found.mean, found.low, found.high})
+          text += "," + csv_cell(value);
+        text += "," + csv_cell(test.name) + "\n";
+      }
     }
   }
   return text;
@@ -80,7 +85,9 @@ std::string curves_csv(const FitSetup& setup, const FitOutcome& outcome) {
 
 Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
   const fit::Finding& finding = outcome.finding;
-  Json json{{"protocol", setup.protocol}, {"parameters", Json::array()}, {"targets", Json::array()}};
+  Json json{{"measured", Json::array()}, {"parameters", Json::array()}, {"targets", Json::array()}};
+  for (const ComparedTest& test : setup.tests)
+    json["measured"].push_back({{"name", test.name}, {"protocol", test.protocol}, {"predict", test.predict}});
   for (std::size_t k = 0; k < setup.parameters.size(); ++k) {
     const fit::Parameter& parameter = setup.parameters[k];
     Json one{{"key", parameter.key}, {"range", {parameter.low, parameter.high}}};
@@ -92,6 +99,7 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
     json["targets"].push_back({{"name", target.name},
                                {"value", target.value},
                                {"standard_error", target.error},
+                               {"of_curve", target.curve >= 0},
                                {"fit", json_of(interval_of(finding.predicted.col(Eigen::Index(k))))}});
   }
   json["misfit"] = finding.misfit;
@@ -113,6 +121,7 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
     sample[setup.parameters[p].key] = std::vector<double>(values.begin(), values.end());
   }
   json["posterior_sample"] = sample;
+  if (!outcome.predictions.empty()) json["predictions"] = predictions_json(setup, outcome.predictions);
   return json;
 }
 
@@ -130,11 +139,13 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
   rows = {{"target", "measured", "fit: mean +- sd"}};
   for (std::size_t k = 0; k < outcome.targets.size(); ++k) {
     const fit::Target& target = outcome.targets[k];
+    if (setup.predicts && target.curve >= 0) continue;  // in curves.csv; the tests as a whole are compared below
     const Interval found = interval_of(finding.predicted.col(Eigen::Index(k)));
     rows.push_back({target.name, ensemble::with_error(target.value, target.error),
                     ensemble::with_error(found.mean, found.deviation)});
   }
-  return text + aligned(rows);
+  if (rows.size() == 1) text.pop_back();
+  return rows.size() > 1 ? text + aligned(rows) : text;
 }
 
 void warn_fit(const FitSetup& setup, const FitOutcome& outcome, std::size_t failed) {
@@ -162,17 +173,20 @@ void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::str
   if (!folder.empty()) {
     publish(folder, "fit.json", object);
     publish(folder, "fit.csv", tests_csv(setup, outcome));
-    if (!setup.curves.empty()) publish(folder, "curves.csv", curves_csv(setup, outcome));
+    if (setup.has_curves()) publish(folder, "curves.csv", curves_csv(setup, outcome));
+    if (setup.predicts) publish(folder, "predictions.csv", predictions_csv(setup, outcome.predictions));
   }
   if (json) {
     std::cout << object << std::flush;
   } else {
-    std::cout << as_text(setup, outcome) << "\ntests   " << outcome.results.size() << " on " << setup.specimen_count
-              << " specimens" << (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") << "\nwall_s  "
+    std::cout << as_text(setup, outcome) << predictions_text(setup, outcome.predictions) << "\ntests   "
+              << outcome.results.size() << " on " << setup.specimen_count << " specimens"
+              << (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") << "\nwall_s  "
               << in_words(outcome.wall_seconds) << "\n";
     if (!folder.empty())
-      std::cout << "files   " << folder << "/fit.json, fit.csv" << (setup.curves.empty() ? "" : ", curves.csv")
-                << "\nfigure  /usr/bin/python3 tools/plot/fit.py " << folder << " -o fit.png\n";
+      std::cout << "files   " << folder << "/fit.json, fit.csv" << (setup.has_curves() ? ", curves.csv" : "")
+                << (setup.predicts ? ", predictions.csv" : "") << "\nfigure  /usr/bin/python3 tools/plot/fit.py "
+                << folder << " -o fit.png\n";
     std::cout << std::flush;
   }
   warn_fit(setup, outcome, failed);

@@ -12,12 +12,21 @@ namespace rvelab::cli {
 struct FitOutcome {
   std::vector<fit::Target> targets;
   fit::Finding finding;
-  std::vector<FitResult> results;  ///< of the trials
+  std::vector<FitResult> results;      ///< of the candidates
+  std::vector<FitResult> predictions;  ///< of all tests, at points of the posterior
   double wall_seconds = 0;
 };
 
-/// Prints the posterior; into the folder go fit.json, fit.csv (one row a test) and, with measured curves, curves.csv.
+/// Prints the posterior; into the folder go fit.json, fit.csv (one row a test), with measured curves curves.csv, and
+/// with predictions predictions.csv.
 void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::string& folder, bool json);
+
+/// What was measured beside what the parameters found give: a table, rows of predictions.csv, and "predictions" of
+/// fit.json. A deviation is over sqrt(e^2 + s^2), the standard error of what was measured and the scatter of the
+/// predictions (specimens and parameters).
+std::string predictions_text(const FitSetup& setup, const std::vector<FitResult>& predictions);
+std::string predictions_csv(const FitSetup& setup, const std::vector<FitResult>& predictions);
+Json predictions_json(const FitSetup& setup, const std::vector<FitResult>& predictions);
 
 /// Prints means and standard errors over the specimens at each point; sweep.csv goes into the folder.
 void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, const std::vector<FitResult>& results,

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -33,61 +34,80 @@ bool of_recipe(const std::string& assignment, const FitSetup& setup) {
 }
 
 /// Assignments of a test for its recipe, or for its protocol.
-std::vector<std::string> assignments_of(const FitSetup& setup, const Eigen::VectorXd& values, bool for_recipe) {
+std::vector<std::string> assignments_of(const FitSetup& setup, const ComparedTest& compared,
+                                        const Eigen::VectorXd& values, bool for_recipe) {
+  std::vector<std::string> all = setup.settings;
+  all.insert(all.end(), compared.settings.begin(), compared.settings.end());
+  for (std::size_t k = 0; k < setup.parameters.size(); ++k)
+    all.push_back(setup.parameters[k].assignment(values[Eigen::Index(k)]));
   std::vector<std::string> chosen;
-  for (const std::string& setting : setup.settings)
-    if (of_recipe(setting, setup) == for_recipe) chosen.push_back(setting);
-  for (std::size_t k = 0; k < setup.parameters.size(); ++k) {
-    const std::string assignment = setup.parameters[k].assignment(values[Eigen::Index(k)]);
+  for (const std::string& assignment : all)
     if (of_recipe(assignment, setup) == for_recipe) chosen.push_back(assignment);
-  }
   return chosen;
 }
 
-std::vector<protocol::Protocol> protocols_of(const FitSetup& setup, const Eigen::VectorXd& values) {
-  std::vector<protocol::Protocol> protocols;
-  for (const double pressure : setup.pressures) {
-    std::vector<std::string> assignments = assignments_of(setup, values, false);
-    if (pressure > 0) assignments.push_back("test.pressure_Pa=" + io::exact(pressure));
-    protocols.push_back(protocol::read_protocol(setup.protocol, assignments));
+protocol::Protocol protocol_of(const FitSetup& setup, const ComparedTest& compared, const Eigen::VectorXd& values) {
+  return protocol::read_protocol(compared.protocol, assignments_of(setup, compared, values, false));
+}
+
+/// The specimens of one set of parameters: given, or packed once for each set of assignments.
+class Specimens {
+ public:
+  Specimens(const FitSetup& setup, const FitTest& test) : setup_(setup), test_(test) {}
+
+  const Specimen& of(const ComparedTest& compared) {
+    if (setup_.recipe.empty()) return setup_.specimens.at(test_.specimen);
+    const std::vector<std::string> assignments = assignments_of(setup_, compared, test_.values, true);
+    if (const auto found = packed_.find(assignments); found != packed_.end()) return found->second;
+    const pack::RecipeFile file = pack::read_recipe(setup_.recipe, assignments);
+    Workers alone(1);
+    pack::PackWatch watch;
+    watch.stop = &stop_on_signals();
+    Specimen specimen = pack::pack(file.member(file.recipe.seed + test_.specimen).recipe, alone, watch).specimen;
+    return packed_.emplace(assignments, std::move(specimen)).first->second;
   }
-  return protocols;
-}
 
-Specimen specimen_of(const FitSetup& setup, const FitTest& test) {
-  if (setup.recipe.empty()) return setup.specimens.at(test.specimen);
-  const pack::RecipeFile file = pack::read_recipe(setup.recipe, assignments_of(setup, test.values, true));
-  Workers alone(1);
-  pack::PackWatch watch;
+ private:
+  const FitSetup& setup_;
+  const FitTest& test_;
+  std::map<std::vector<std::string>, Specimen> packed_;
+};
+
+/// Runs one test and adds what it gave; false: it was stopped.
+bool add_test(const FitSetup& setup, const FitTest& test, const ComparedTest& compared, Specimens& specimens,
+              ProgressLine& progress, FitResult& result) {
+  const Specimen& specimen = specimens.of(compared);
+  const int dimension = specimen.cell.dimension;
+  const protocol::Protocol protocol = protocol_of(setup, compared, test.values);
+  const std::string label =
+      "test " + std::to_string(test.number + 1) + (compared.name.empty() ? "" : ", " + compared.name);
+  protocol::Watch watch;
   watch.stop = &stop_on_signals();
-  return pack::pack(file.member(file.recipe.seed + test.specimen).recipe, alone, watch).specimen;
+  watch.on_path_point = [&](const protocol::PathPoint& reached) { progress.show(test.number, label, reached); };
+  const protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
+  if (!run.complete) return false;
+  result.measures.push_back(ensemble::measured(protocol, run.result, dimension));
+  for (const fit::Curve& measured : compared.curves) {
+    fit::TestCurve curve = fit::curve_of(run.result, dimension, measured);
+    result.curves.push_back(std::move(curve.y));
+    result.features.push_back(curve.features);
+  }
+  return true;
 }
 
-/// Makes one test; none: it was stopped.
+/// Makes the tests of one set of parameters; none: they were stopped.
 std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, ProgressLine& progress) {
   FitResult result;
-  try {
-    const Specimen specimen = specimen_of(setup, test);
-    const int dimension = specimen.cell.dimension;
-    std::vector<records::TestResult> runs;
-    for (const protocol::Protocol& protocol : protocols_of(setup, test.values)) {
-      protocol::Watch watch;
-      watch.stop = &stop_on_signals();
-      watch.on_path_point = [&](const protocol::PathPoint& reached) {
-        progress.show(test.number, "test " + std::to_string(test.number + 1), reached);
-      };
-      const protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
-      if (!run.complete) return std::nullopt;
-      result.measures.push_back(ensemble::measured(protocol, run.result, dimension));
-      runs.push_back(run.result);
+  Specimens specimens(setup, test);
+  for (const ComparedTest& compared : setup.tests) {
+    if (compared.predict && !test.predicting) continue;
+    try {
+      if (!add_test(setup, test, compared, specimens, progress, result)) return std::nullopt;
+    } catch (const Interrupted&) {
+      return std::nullopt;
+    } catch (const Error& error) {
+      return FitResult{{}, {}, {}, (compared.name.empty() ? "" : compared.name + ": ") + error.what()};
     }
-    for (const MeasuredCurve& measured : setup.curves)
-      result.curves.push_back(
-          fit::curve_of(runs.at(setup.pressure_number(measured.pressure)), dimension, measured.curve));
-  } catch (const Interrupted&) {
-    return std::nullopt;
-  } catch (const Error& error) {
-    result = {{}, {}, error.what()};
   }
   return result;
 }
@@ -108,10 +128,26 @@ std::vector<std::vector<double>> read_numbers(const Json& rows) {
   return lists;
 }
 
-std::string file_of(const std::string& folder, std::size_t number) {
-  const std::string digits = std::to_string(number + 1);
+Json features_of(const FitResult& result) {
+  Json rows = Json::array();
+  for (const fit::Features& each : result.features)
+    rows.push_back({each.largest, each.at_largest, each.early, each.last});
+  return rows;
+}
+
+std::vector<fit::Features> read_features(const Json& rows) {
+  std::vector<fit::Features> features;
+  for (std::vector<double> row : read_numbers(rows)) {
+    row.resize(4, fit::Features::nan());
+    features.push_back({row[0], row[1], row[2], row[3]});
+  }
+  return features;
+}
+
+std::string file_of(const std::string& folder, const FitTest& test) {
+  const std::string digits = std::to_string(test.number + 1);
   const std::string zeros(digits.size() < 4 ? 4 - digits.size() : 0, '0');
-  return (fs::path(folder) / "tests" / (zeros + digits + ".json")).string();
+  return (fs::path(folder) / (test.predicting ? "predictions" : "tests") / (zeros + digits + ".json")).string();
 }
 
 void keep(const std::string& path, const FitTest& test, const FitResult& result) {
@@ -119,6 +155,7 @@ void keep(const std::string& path, const FitTest& test, const FitResult& result)
             {"specimen", test.specimen + 1},
             {"measures", numbers(result.measures)},
             {"curves", numbers(result.curves)},
+            {"features", features_of(result)},
             {"failure", result.failure}};
   io::publish_text(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -135,7 +172,7 @@ std::optional<FitResult> kept(const std::string& path, const FitTest& test) {
     if (!same)
       throw InputError(path + ": is of another test; allowed with --resume: the same fit; start anew with --force");
     return FitResult{read_numbers(json.at("measures")), read_numbers(json.at("curves")),
-                     json.at("failure").get<std::string>()};
+                     read_features(json.at("features")), json.at("failure").get<std::string>()};
   } catch (const Json::exception&) {
     throw InputError(path + ": is damaged; allowed: what `rvelab fit` wrote; remove the file, and go on with --resume");
   }
@@ -143,8 +180,19 @@ std::optional<FitResult> kept(const std::string& path, const FitTest& test) {
 
 }  // namespace
 
-std::size_t FitSetup::pressure_number(double pressure) const {
-  return std::size_t(std::find(pressures.begin(), pressures.end(), pressure) - pressures.begin());
+bool FitSetup::has_targets() const {
+  return has_curves() ||
+         std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.targets.empty(); });
+}
+bool FitSetup::has_curves() const {
+  return std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.curves.empty(); });
+}
+
+double measure_of(const FitResult& result, std::size_t made, const std::string& measure) {
+  const auto& known = ensemble::measures();
+  const auto found =
+      std::find_if(known.begin(), known.end(), [&](const ensemble::Measure& each) { return each.name == measure; });
+  return result.measures.at(made).at(std::size_t(found - known.begin()));
 }
 
 void expect_runnable(const FitSetup& setup) {
@@ -153,17 +201,18 @@ void expect_runnable(const FitSetup& setup) {
     Eigen::VectorXd values(count);
     for (Eigen::Index k = 0; k < count; ++k)
       values[k] = high ? setup.parameters[std::size_t(k)].high : setup.parameters[std::size_t(k)].low;
-    for (const std::string& assignment : assignments_of(setup, values, true))
-      if (setup.recipe.empty())
-        throw InputError(assignment +
+    for (const ComparedTest& compared : setup.tests) {
+      const std::vector<std::string> of_packing = assignments_of(setup, compared, values, true);
+      if (setup.recipe.empty() && !of_packing.empty())
+        throw InputError(of_packing.front() +
                          " is a key of a recipe; allowed: with --recipe; name one, or vary a key of the "
                          "protocol");
-    const auto protocols = protocols_of(setup, values);
-    if (!setup.recipe.empty())
-      tell_of_units(setup.recipe, pack::read_recipe(setup.recipe, assignments_of(setup, values, true)).doubts);
-    for (const protocol::Protocol& each : protocols) tell_of_units(setup.protocol, each.doubts);
-    for (const Specimen& specimen : setup.specimens)
-      tell_of_units(setup.protocol, protocol::unusual_in(protocols.front(), specimen));
+      const protocol::Protocol protocol = protocol_of(setup, compared, values);
+      if (!setup.recipe.empty()) tell_of_units(setup.recipe, pack::read_recipe(setup.recipe, of_packing).doubts);
+      tell_of_units(compared.protocol, protocol.doubts);
+      for (const Specimen& specimen : setup.specimens)
+        tell_of_units(compared.protocol, protocol::unusual_in(protocol, specimen));
+    }
   }
 }
 
@@ -176,10 +225,10 @@ std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& t
   for (std::size_t k = 0; k < tests.front().number; ++k) progress.done(k);
   Workers(at_a_time).for_each_in_turn(tests.size(), [&](std::size_t k) {
     if (stop_on_signals().load()) return;
-    if (!folder.empty()) results[k] = kept(file_of(folder, tests[k].number), tests[k]);
+    if (!folder.empty()) results[k] = kept(file_of(folder, tests[k]), tests[k]);
     if (!results[k]) {
       results[k] = carried_out(setup, tests[k], progress);
-      if (results[k] && !folder.empty()) keep(file_of(folder, tests[k].number), tests[k], *results[k]);
+      if (results[k] && !folder.empty()) keep(file_of(folder, tests[k]), tests[k], *results[k]);
     }
     if (results[k]) progress.done(tests[k].number);
   });

@@ -1,4 +1,4 @@
-// The tests of `rvelab fit`: a protocol with the varied keys, on specimens that are given or packed for each test. What
+// The tests of `rvelab fit`: protocols with the varied keys, on specimens that are given or packed for each test. What
 // a test gave lies in a file of its own, so that a fit that was killed goes on with the tests that are missing.
 #pragma once
 
@@ -14,15 +14,19 @@
 
 namespace rvelab::cli {
 
-/// A measured curve, and the pressure that it was measured at.
-struct MeasuredCurve {
-  fit::Curve curve;
-  double pressure = 0;  ///< Pa; 0: that of the protocol
+/// A test that each set of parameters makes, and what was measured in it.
+struct ComparedTest {
+  std::string name;                   ///< ""; of a file of several tests: its own
+  std::string protocol;               ///< path
+  std::vector<std::string> settings;  ///< KEY=value of it alone
+  double pressure = 0;                ///< Pa; 0: that of the protocol
+  std::vector<fit::ScalarTarget> targets;
+  std::vector<fit::Curve> curves;
+  bool predict = false;  ///< not fitted
 };
 
-/// What every test of a fit has in common.
+/// What every test of a fit has in common, and the tests.
 struct FitSetup {
-  std::string protocol;               ///< path
   std::vector<std::string> settings;  ///< --set
   std::string recipe;                 ///< path; "": the specimens are given
   std::vector<std::string> files;     ///< of the specimens
@@ -30,32 +34,37 @@ struct FitSetup {
   std::size_t specimen_count = 0;  ///< of the recipe: seeds from its own on
   bool same_specimens = false;     ///< the targets were measured on the given specimens
   std::vector<fit::Parameter> parameters;
-  std::vector<fit::ScalarTarget> targets;
-  std::vector<MeasuredCurve> curves;
-  std::vector<double> pressures;  ///< of each test; 0: that of the protocol
+  std::vector<ComparedTest> tests;
+  bool predicts = false;  ///< all tests are made once more with the parameters found
 
-  std::size_t pressure_number(double pressure) const;
+  bool has_targets() const;
+  bool has_curves() const;
 };
 
-/// One test to make.
+/// The tests of one set of parameters, to be made.
 struct FitTest {
   std::size_t number = 0;
   Eigen::VectorXd values;  ///< of the parameters
   std::size_t specimen = 0;
+  bool predicting = false;  ///< those that are not fitted too
 };
 
-/// What it gave.
+/// What they gave.
 struct FitResult {
-  std::vector<std::vector<double>> measures;  ///< of ensemble::measures(), for each pressure
-  std::vector<std::vector<double>> curves;
-  std::string failure;  ///< why it could not be carried out; "": it was
+  std::vector<std::vector<double>> measures;  ///< of ensemble::measures(), for each test that was made
+  std::vector<std::vector<double>> curves;    ///< one after the other over these tests
+  std::vector<fit::Features> features;        ///< of the curves
+  std::string failure;                        ///< why one could not be carried out; "": all were
 };
+
+/// A measure of the test that was made as number `made`.
+double measure_of(const FitResult& result, std::size_t made, const std::string& measure);
 
 /// InputError for a key that neither protocol nor recipe takes, at both ends of every range, and for a specimen that
 /// does not go with the protocol.
 void expect_runnable(const FitSetup& setup);
 
-/// Makes the tests, `threads` at a time; those whose file is in `folder` are read. Without a folder nothing is kept.
+/// Makes them, `threads` sets at a time; those whose file is in `folder` are read. Without a folder nothing is kept.
 /// Exit after a signal.
 std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& tests, const std::string& folder,
                             unsigned threads, std::size_t planned);

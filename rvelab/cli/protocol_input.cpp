@@ -79,8 +79,8 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
                    ", or the path of a file " + (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
-std::string installed_study(const std::string& name) {
-  const fs::path path = installed_folder() / "studies" / (name + ".toml");
+std::string installed_in(const std::string& folder, const std::string& name) {
+  const fs::path path = installed_folder() / folder / (name + ".toml");
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) ? path.string() : "";
 }

@@ -55,7 +55,7 @@ bool is_path(const std::string& name) { return name.find('/') != std::string::np
 /// The study file, or a new study of a protocol, before the options of the command line are added.
 Loaded loaded(const std::string& name) {
   Loaded found;
-  const std::string installed = is_path(name) ? "" : installed_study(name);
+  const std::string installed = is_path(name) ? "" : installed_in("studies", name);
   const std::string what = installed.empty() ? name : installed;
   if (is_path(what)) {
     const toml::table file = keys::parse_toml_file(what);

@@ -1,11 +1,14 @@
 // A measured curve as targets: read from CSV, brought to a few abscissae, and the same curve of a test.
 //
-// The header names the columns, each with its unit at its end: the abscissa first, then one or more curves over it,
+// The header names the columns, with units (column_kinds.hpp): the abscissa first, then one or more curves over it,
 // each with its standard error if it has one (NAME_error). Compression is positive.
-//   abscissa   axial_strain, shear_strain (1, or _percent), p_Pa (_kPa, _MPa; interpolated in its logarithm)
-//   curves     q_over_p, deviator_Pa (sigma_1 - sigma_3; _kPa, _MPa), volumetric_strain (1, or _percent), void_ratio
+//   abscissa   axial_strain, shear_strain; p, axial_stress (interpolated in their logarithm)
+//   curves     q_over_p, deviator (sigma_1 - sigma_3), p, volumetric_strain, void_ratio; over a stress axial_strain,
+//              which counts from its first point
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,26 +18,55 @@
 
 namespace rvelab::fit {
 
+/// What is read off a curve over a strain; NaN: it does not give it. SI units of the curve.
+struct Features {
+  double largest = nan(), at_largest = nan();  ///< highest value, and the abscissa where it is reached first
+  double early = nan();                        ///< at `early_strain`
+  double last = nan();                         ///< at the last abscissa
+
+  static constexpr double early_strain = 1e-3;
+  static constexpr double nan() { return std::numeric_limits<double>::quiet_NaN(); }
+};
+
 struct Curve {
-  std::string name;                 ///< of the column, without its unit
-  std::string abscissa;             ///< "strain" or "p"
-  std::vector<double> x, y, error;  ///< SI; at most `most_points` of the measured range
+  std::string name;                 ///< of the quantity: "deviator"
+  std::string abscissa;             ///< "strain", "p" or "axial_stress"
+  std::vector<double> x, y, error;  ///< SI; at most `most_points` rows of the measured range
+  Features features{};              ///< of all its rows
 };
 
 inline constexpr std::size_t most_points = 12;
 
-/// The curves of a CSV file (io/import/csv_table.hpp: semicolons, decimal commas, quotation marks, `sep=`). InputError:
-/// no such file, an unknown column (with the known ones), a column or a quantity twice, an error of no column, a value
-/// that is no number, an abscissa that does not rise, fewer than two rows.
-std::vector<Curve> read_curves(const std::string& path);
+/// Which columns and rows of a file are read.
+struct Selection {
+  /// "KIND", or "KIND=NAME" for a column of another name ("deviator_kPa=q"), the abscissa first; further columns are
+  /// left out. Empty: all columns, each of which must be known.
+  std::vector<std::string> columns;
+  std::optional<double> from, to;  ///< of the abscissa, in the unit of its column; the ends of the file
+};
+
+/// The curves of a CSV file (io/import/csv_table.hpp: semicolons, decimal commas, quotation marks, `sep=`). Rows after
+/// the largest abscissa, where it falls, are unloading and left out. A curve of more than `most_points` rows is brought
+/// to those where it bends. InputError: no such file, an unknown column (with the known ones), a column or a quantity
+/// twice, an error of no column, a value that is no number, an abscissa that does not rise, fewer than two rows.
+std::vector<Curve> read_curves(const std::string& path, const Selection& selection = {});
 /// The same from a text; `path` serves messages.
-std::vector<Curve> parsed_curves(const std::string& text, const std::string& path);
+std::vector<Curve> parsed_curves(const std::string& text, const std::string& path, const Selection& selection = {});
 
-/// The curve of a test's last stage at the abscissae of a measured one; NaN beyond its end. Only the rising part of the
-/// abscissa counts.
-std::vector<double> curve_of(const records::TestResult& test, int dimension, const Curve& like);
+/// Gives the points standard errors as repeated tests of laboratories have them (laboratory_scatter).
+void assume_scatter(Curve& curve);
+/// Those of a quantity in words: "4 % of each value and 1 % of the largest".
+std::string laboratory_scatter(const std::string& quantity);
 
-/// The points as targets of one curve.
-std::vector<Target> targets_of(const Curve& curve, int number);
+/// A test's last stage as a measured curve.
+struct TestCurve {
+  std::vector<double> y;  ///< at the abscissae of the measured one; NaN beyond its end
+  Features features;      ///< up to the last of them
+};
+/// Only the rising part of the abscissa counts.
+TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& like);
+
+/// The points as targets of one curve; `test`: the name that begins theirs, "" for none.
+std::vector<Target> targets_of(const Curve& curve, int number, const std::string& test = "");
 
 }  // namespace rvelab::fit

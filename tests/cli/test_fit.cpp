@@ -1,5 +1,6 @@
 // rvelab fit as a user runs it: a target, a measured curve, a sweep; stopped and resumed; mistakes.
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -62,7 +63,7 @@ TEST_CASE("A measured curve is fitted, and the fit over the data is written and 
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
   const std::string csv = bytes_of(here / "F/curves.csv");
-  CHECK_THAT(csv, Contains("curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n") &&
+  CHECK_THAT(csv, Contains("curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95,test\n") &&
                       Contains("1,0,deviator,strain,5e-04,4000,1000,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
 }
@@ -123,6 +124,78 @@ TEST_CASE("The scatter of the friction angle falls with the root of the number o
   CHECK(error(0) / error(1) < 4 * std::sqrt(4.99));
 }
 
+namespace {
+
+// Thirty discs at two pressures, each with the modulus that they answer with at E = 800 MPa, and a curve.
+std::string soil_file(double at_50_kPa, double at_100_kPa) {
+  const auto test = [](const std::string& name, const std::string& pressure, const std::string& more) {
+    return "[[measured]]\nname = \"" + name + "\"\nprotocol = \"biaxial\"\npressure_Pa = " + pressure + "\n" + more;
+  };
+  const auto target = [](double value) {
+    return "targets = [\"E50_Pa=" + std::to_string(value) + "+-" + std::to_string(0.02 * value) + "\"]\n";
+  };
+  return "[fit]\nrecipe = \"pack_dense\"\ncount = 2\nsettings = [\"pack.number=30\", "
+         "\"target.void_ratio_tolerance=0.02\", "
+         "\"stage.compression.to_strain=0.002\"]\nvary = [\"material.young_modulus_Pa=2e8:3.2e9:log\"]\n" +
+         test("low", "50e3", target(at_50_kPa)) +
+         test("curve", "50e3",
+              "curve = \"data.csv\"\ncolumns = [\"axial_strain_percent=eps\", \"deviator_kPa=q\"]\npredict = true\n") +
+         test("high", "100e3", target(at_100_kPa) + "predict = true\n");
+}
+
+}  // namespace
+
+TEST_CASE("One set of parameters is fitted to some tests of a soil, and predicts the others") {
+  const Workplace here;
+  here.write("data.csv", "minute,eps,q\n0,0,0\n1,0.05,20\n2,0.1,30\n3,0.2,40\n");
+  std::map<std::string, double> modulus;
+  for (const std::string pressure : {"50e3", "100e3"}) {
+    const std::string name = "S_" + pressure;
+    REQUIRE(here.run("pack pack_dense --count 2 --set pack.number=30 --set target.void_ratio_tolerance=0.02 "
+                     "--set target.pressure_Pa=" +
+                     pressure + " -o " + name + ".h5")
+                .code == 0);
+    const auto known = nlohmann::json::parse(here.run("run biaxial --specimen '" + name +
+                                                      "_*.h5' --json --set stage.compression.to_strain=0.002 "
+                                                      "--set test.pressure_Pa=" +
+                                                      pressure)
+                                                 .output);
+    for (const auto& test : known["tests"]) modulus[pressure] += test["E50_Pa"].get<double>() / 2;
+  }
+  here.write("soil.toml", soil_file(modulus["50e3"], modulus["100e3"]));
+  const Outcome outcome = here.run("fit soil.toml --tests 24 -o F");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  CHECK_THAT(outcome.errors, Contains("deviator has no standard error in curve"));
+  CHECK_THAT(outcome.output, Contains("predicted") && Contains("fitted"));
+  const auto found = nlohmann::json::parse(bytes_of(here / "F/fit.json"));
+  CHECK(found["parameters"][0]["low_95"].get<double>() <= 8e8);
+  CHECK(found["parameters"][0]["high_95"].get<double>() >= 8e8);
+  const auto predicted = [&](const std::string& name) {
+    for (const auto& each : found["predictions"])
+      if (each["test"] == name) return each;
+    return nlohmann::json();
+  };
+  CHECK(predicted("high")["predicted"] == true);
+  CHECK(predicted("high")["off_standard_errors"].get<double>() < 2.5);
+  CHECK(predicted("low")["predicted"] == false);
+  CHECK(predicted("curve")["largest"]["measured"].get<double>() == Approx(40e3));
+  const std::string csv = bytes_of(here / "F/predictions.csv");
+  CHECK_THAT(csv, Contains("\ncurve,1,deviator,strain,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
+  // After a kill what is missing is made again, predictions too, and nothing else changes.
+  for (const char* name : {"F/fit.json", "F/tests/0003.json", "F/predictions/0002.json"})
+    std::filesystem::remove(here / name);
+  REQUIRE(here.run("fit soil.toml --tests 24 -o F --resume --threads 2").code == 0);
+  CHECK(nlohmann::json::parse(bytes_of(here / "F/fit.json")) == found);
+  const Outcome other = here.run("fit soil.toml --tests 24 -o F --resume --set pack.seed=2");
+  CHECK(other.code == 2);
+  CHECK_THAT(other.errors, Contains("is of another fit"));
+  expect_mistake(here.run("fit soil.toml --predict lowe"), "the nearest is low");
+  expect_mistake(here.run("fit soil.toml --predict low"), "names every test");
+  expect_mistake(here.run("fit soil.toml --target E50_Pa=3e7"), "targets of a [[measured]]");
+}
+
 TEST_CASE("Mistakes of a fit are told before any test") {
   Workplace place;
   const Workplace& here = with_two_packings(place);
@@ -142,5 +215,8 @@ TEST_CASE("Mistakes of a fit are told before any test") {
                  "--same-specimens is given with --recipe");
   expect_mistake(here.run(fit + "--same-specimens --vary material.friction=0.1:1:5"), "without a target");
   expect_mistake(here.run(fit + "--target angle=30 --vary material.friction=0.1:1"), "the nearest is");
+  expect_mistake(here.run(fit + "--predict A --vary material.friction=0.1:1"), "with a protocol");
+  expect_mistake(here.run(fit + "--column q_over_p --target friction_angle_deg=30 --vary material.friction=0.1:1"),
+                 "--column is given without --curve");
   expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
 }

@@ -53,6 +53,12 @@ install(TARGETS rvelab_umat LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONEN
 install(FILES ${scenes} DESTINATION share/rvelab/protocols/mpm COMPONENT program)
 install(FILES ${protocols} DESTINATION share/rvelab/protocols COMPONENT program)
 install(FILES ${studies} DESTINATION share/rvelab/protocols/studies COMPONENT program)
+install(FILES ${fits} DESTINATION share/rvelab/protocols/fits COMPONENT program)
+foreach(file IN LISTS fitted_tests)
+  get_filename_component(folder ${file} DIRECTORY)
+  get_filename_component(folder ${folder} NAME)
+  install(FILES ${file} DESTINATION share/rvelab/protocols/fits/${folder} COMPONENT program)
+endforeach()
 install(FILES ${soils} DESTINATION share/rvelab/protocols/soils COMPONENT program)
 install(PROGRAMS ${plot_scripts} DESTINATION share/rvelab/plot COMPONENT program)
 

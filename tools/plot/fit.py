@@ -19,13 +19,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 # Labels of what a curve measures and of what it goes with, and the factor to their units.
-QUANTITIES = {"q_over_p": ("$q/p$", 1), "deviator": ("$\\sigma_1 - \\sigma_3$ (kPa)", 1e-3),
+QUANTITIES = {"p": ("mean stress $p$ (kPa)", 1e-3), "strain": ("axial strain (%)", 100), "q_over_p": ("$q/p$", 1), "deviator": ("$\\sigma_1 - \\sigma_3$ (kPa)", 1e-3),
               "volumetric_strain": ("volumetric strain $\\varepsilon_v$ (%)", 100), "void_ratio": ("void ratio $e$", 1)}
-ABSCISSAE = {"strain": ("strain (%)", 100), "p": ("mean stress $p$ (kPa)", 1e-3)}
+ABSCISSAE = {"strain": ("strain (%)", 100), "p": ("mean stress $p$ (kPa)", 1e-3),
+             "axial_stress": ("axial stress (kPa)", 1e-3)}
 
 
 def read_fit(folders):
-    """("fit", fit.json, rows of curves.csv) or ("sweep", rows of sweep.csv) of the one folder."""
+    """("fit", fit.json, rows of predictions.csv, else of curves.csv) or ("sweep", rows of sweep.csv) of the one folder."""
     if len(folders) != 1:
         raise ValueError(f"{' '.join(folders)}: one fit at a time; give the folder of one")
     folder = pathlib.Path(folders[0])
@@ -40,8 +41,10 @@ def read_fit(folders):
         raise ValueError(f"{own}: is not there; give the folder that `rvelab fit -o` wrote") from error
     except (json.JSONDecodeError, KeyError, TypeError, UnicodeDecodeError) as error:
         raise ValueError(f"{own}: not the fit.json of rvelab ({error}); give the folder that `rvelab fit -o` wrote") from error
-    curves = folder / "curves.csv"
-    return "fit", found, rows_of(curves) if curves.exists() else []
+    for name in ("predictions.csv", "curves.csv"):
+        if (folder / name).exists():
+            return "fit", found, rows_of(folder / name)
+    return "fit", found, []
 
 
 def rows_of(path):
@@ -94,20 +97,29 @@ def draw_targets(axes, targets):
 
 
 def draw_curve(axes, rows):
-    """Points of one measured curve, and the band of the fit."""
+    """Points of one measured curve, and the band of the fit, or of the tests made with the parameters found."""
     rows = sorted(rows, key=lambda row: float(row["x"]))
     (label, scale), (below, across) = QUANTITIES[rows[0]["quantity"]], ABSCISSAE[rows[0]["abscissa"]]
 
     def column(name, factor=scale):
         return factor * np.array([float(row[name]) if row[name] else np.nan for row in rows])
     x = column("x", across)
-    axes.fill_between(x, column("low_95"), column("high_95"), color="tab:blue", alpha=0.2, linewidth=0, label="95 % of the fit")
-    axes.plot(x, column("fit"), color="tab:blue", label="fit")
+    if "mean" in rows[0]:
+        mean, deviation = column("mean"), column("standard_deviation")
+        low, high, band, name = mean - deviation, mean + deviation, "scatter", "mean"
+        role = "predicted" if rows[0]["predicted"] == "1" else "fitted"
+        axes.set_title(f"{rows[0]['test']}, {role}", fontsize=9, pad=18)
+        colour = "tab:orange" if role == "predicted" else "tab:blue"
+    else:
+        mean, low, high, band, name = column("fit"), column("low_95"), column("high_95"), "95 % of the fit", "fit"
+        colour = "tab:blue"
+    axes.fill_between(x, low, high, color=colour, alpha=0.2, linewidth=0, label=band)
+    axes.plot(x, mean, color=colour, label=name)
     axes.errorbar(x, column("measured"), yerr=column("error"), fmt="o", color="k", markersize=3, capsize=2, linewidth=0.8,
                   label="measured")
-    if rows[0]["abscissa"] == "p":
+    if rows[0]["abscissa"] != "strain":
         kinds.log_axis(axes.xaxis, x)
-    pressure = float(rows[0]["pressure_Pa"] or 0)
+    pressure = float(rows[0].get("pressure_Pa") or 0)
     axes.set_xlabel(below + (f" at {records.plain(pressure / 1e3)} kPa" if pressure > 0 else ""), fontsize=9)
     axes.set_ylabel(label, fontsize=9)
     axes.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
@@ -126,8 +138,7 @@ def panels(count):
 
 def draw_fit(found, rows, options):
     measured = groups_of(rows)
-    points = sum(len(group) for group in measured)
-    scalars = found["targets"][:len(found["targets"]) - points]
+    scalars = [target for target in found["targets"] if not target.get("of_curve", " at " in target["name"])]
     count = len(found["parameters"]) + bool(scalars) + len(measured)
     figure, axes = panels(count)
     for parameter in found["parameters"]:
@@ -145,7 +156,7 @@ def groups_of(rows):
     """Numbers of the rows of each curve and quantity, in their order."""
     groups = {}
     for number, row in enumerate(rows):
-        groups.setdefault((row["curve"], row["quantity"]), []).append(number)
+        groups.setdefault((row.get("curve", row["test"]), row["quantity"]), []).append(number)
     return list(groups.values())
 
 
