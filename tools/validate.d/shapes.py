@@ -1,0 +1,118 @@
+"""tools/validate shapes: what the shape of grains in space does, beside what was published.
+
+    shapes.py RVELAB FOLDER [--count 5]
+
+1. Random packings without friction of hard grains, 400 each, 10 kPa: solid fraction and contacts a grain (without those that bear nothing) beside
+   spheres (0.64, 6: isostatic), ellipsoids of 1.25 : 1 : 0.8 (0.735, at most 12; Donev et al. 2004, Science 303, 990-993) and prolate
+   ones of 1.5 : 1 : 1 (at most 10 constraints a grain, Donev et al. 2007, Phys. Rev. E 75, 051304).
+2. Friction angle (triaxial compression at 100 kPa to 15 %, dense specimens of 200 grains; highest, and mean of 12 to 15 %) against
+   the aspect ratio of prolate ellipsoids: rises with elongation, then levels (Azema and Radjai 2010, Phys. Rev. E 81, 051304; Ng 2009,
+   Int. J. Numer. Anal. Methods Geomech. 33, 511-527).
+3. The same against the exponents of superellipsoids of equal axes: rises with blockiness (Zhao, Evans and Zhou 2018, Int. J. Solids
+   Struct. 150, 268-281)."""
+
+import json
+import math
+import statistics
+import subprocess
+
+import part
+from verdict import tell_verdicts, verdict
+
+options = part.options(__doc__)
+
+
+def call(*words):
+    return json.loads(subprocess.run([options.program, *map(str, words), "--json"], check=True, capture_output=True, text=True).stdout)
+
+
+def kept(name, make):
+    """What `make` gives, kept in the folder."""
+    path = options.work / f"{name}.json"
+    if not path.exists():
+        path.write_text(json.dumps(make()))
+    return json.loads(path.read_text())
+
+
+def settings(**of):
+    return [word for key, value in of.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+
+
+def packed(name, seed, **of):
+    file = options.work / f"{name}_{seed}.h5"
+    return file, call("pack", "pack_ellipsoids", "-o", file, "--force", *settings(pack__seed=seed, **of))
+
+
+def spread(values):
+    return statistics.mean(values), statistics.stdev(values) / math.sqrt(len(values))
+
+
+def in_words(mean_error, digits):
+    return "{:.{d}f} +- {:.{d}f}".format(*mean_error, d=digits)
+
+
+def bearing(file):
+    """Contacts a grain over the grains that bear."""
+    found = call("inspect", file)
+    return found["mechanical_coordination_number"]
+
+
+def random_packing(name, axes):
+    def make(seed):
+        file, found = packed(f"random_{name}", seed, grains__half_axes=axes, preparation__friction=0, material__friction=0,
+                             material__young_modulus_Pa=7e10, target__pressure_Pa=1e4, grains__smallest_radius_m=0.95e-3,
+                             grains__largest_radius_m=1.05e-3)
+        return 1 / (1 + found["void_ratio"]), bearing(file)
+    found = [kept(f"random_{name}_{seed}", lambda seed=seed: make(seed)) for seed in range(1, options.count + 1)]
+    return [spread(column) for column in zip(*found)]
+
+
+def angles(name, **of):
+    """Highest friction angle and that of 12 to 15 %, degrees."""
+    def make(seed):
+        file, _ = packed(f"sheared_{name}", seed, pack__number=200, **of)
+        test = call("run", "triaxial", "--specimen", file, "-o", options.work / f"R_{name}_{seed}.h5", "--force",
+                    *settings(stage__compression__to_strain=0.15))
+        return test["peak_friction_angle_deg"], test["large_strain_friction_angle_deg"]
+    found = [kept(f"sheared_{name}_{seed}", lambda seed=seed: make(seed)) for seed in range(1, options.count + 1)]
+    return [spread(column) for column in zip(*found)]
+
+
+def rises(series, first, last, column):
+    """Rise of an angle between two of a series, and its standard error."""
+    (a, da), (b, db) = series[first][column], series[last][column]
+    return b - a, math.hypot(da, db)
+
+
+def main():
+    print(f"{options.count} specimens each; mean +- standard error\n")
+    print(f"{'without friction':<28} {'solid fraction':<22} contacts a grain")
+    for name, axes, solid, most in (("spheres", [1, 1, 1], 0.64, 6), ("1.25 : 1 : 0.8", [1.25, 1, 0.8], 0.735, 12),
+                                    ("1.5 : 1 : 1", [1.5, 1, 1], None, 10)):
+        fraction, contacts = random_packing(name.replace(" ", "").replace(":", "_"), axes)
+        print(f"{name:<28} {in_words(fraction, 4):<22} {in_words(contacts, 2)}")
+        if solid:
+            verdict(f"{name}: solid fraction", in_words(fraction, 4), f"{solid} +- 0.01", abs(fraction[0] - solid) <= 0.01)
+        verdict(f"{name}: contacts a grain", in_words(contacts, 2), f"{most}, 2 % above, 12 % below",
+                0.88 * most <= contacts[0] <= 1.02 * most)
+    for title, values, setting, claim in (
+            ("aspect ratio", (1, 1.25, 1.5, 2, 3), lambda v: {"grains__half_axes": [v, 1, 1]}, (1, 1.5)),
+            ("exponents", (2, 3, 4), lambda v: {"pack__shape": "superellipsoid", "grains__half_axes": [1, 1, 1],
+                                                 "grains__exponents": [v, v]}, (2, 4))):
+        print(f"\n{title:<28} {'highest angle, degrees':<22} at 12 to 15 %")
+        series = {}
+        for value in values:
+            series[value] = angles(f"{title.split()[0]}_{value:g}", **setting(value))
+            print(f"{value:<28g} {in_words(series[value][0], 1):<22} {in_words(series[value][1], 1)}", flush=True)
+        for column, angle in enumerate(("highest angle", "angle at 12 to 15 %")):
+            rise = rises(series, *claim, column)
+            verdict(f"{title}: {angle} rises from {claim[0]:g} to {claim[1]:g}", in_words(rise, 1), "> 2 standard errors",
+                    rise[0] > 2 * rise[1])
+        if title == "aspect ratio":
+            early, late = rises(series, 1, 1.5, 1), rises(series, 2, 3, 1)
+            verdict("aspect ratio: levels, 2 to 3 beside 1 to 1.5", f"{late[0]:.1f} +- {late[1]:.1f}", f"< half of {early[0]:.1f}",
+                    late[0] < 0.5 * early[0])
+    tell_verdicts()
+
+
+main()
