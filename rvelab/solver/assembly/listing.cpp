@@ -48,7 +48,7 @@ bool touches(const Model& model, const Assembly& assembly, const UpperTriangle& 
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
   const double z = dimension_of(shape) == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
-  if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, 0}, xi, xj).overlap > 0;
+  if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, z}, xi, xj).overlap > 0;
   const double radii = model.radius[std::size_t(pair.i)] + model.radius[std::size_t(pair.j)];
   return x * x + y * y + z * z < radii * radii;
 }
@@ -169,7 +169,7 @@ void rotate_rows(const Model& model, const Matrix3& turn, Buffer& rows) {
     rotate(row);
     rotate(row + model.velocity_offset());
     if (model.dimension() == 3) rotate(row + 8);
-    if (!model.round()) {
+    if (keeps_axis(model.shape)) {
       rotate(row + 5);
       complete_row(model, g, row);
     }
@@ -282,6 +282,12 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
   assembly.state.list.steps = 0;
   assembly.state.list.positions.resize(model.size());
   for (std::size_t g = 0; g < model.size(); ++g) assembly.state.list.positions[g] = listed_place(model, assembly, g);
+  if (moves_as_body(model.shape)) {
+    assembly.state.list.orientations.resize(model.size());
+    for (std::size_t g = 0; g < model.size(); ++g)
+      assembly.state.list.orientations[g] =
+          noted_turn(assembly.rows.data() + g * std::size_t(model.row_length()));
+  }
   ++assembly.state.list.builds;
   return reduction;
 }
