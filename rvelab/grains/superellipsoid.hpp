@@ -2,9 +2,9 @@
 // (description.hpp; formulas of one body in superellipsoid/body.hpp).
 //
 // Each is a body of its own (Specimen::bodies), which keeps its orientation, x y z of the shape to the cell frame, and
-// its motion. Its row among the grains is {x, y, z, rho, u, v, w, 0, wx, wy, wz, 0, q0, q1, q2, q3, a, b, c, P, N, R, S,
-// l}: q the orientation, rho the radius of a ball that rolls inside, P = 1 - 1/(e - 1), N = 1 - 1/(n - 1), R = 1/2 - 1/e,
-// S = 1/2 - 1/n, l = Extent::turning. So a row of zeros, as those that pad the lanes are, is a sphere of no size.
+// its motion. Its row among the grains is {x, y, z, rho, u, v, w, 0, wx, wy, wz, 0, q0, q1, q2, q3, a, b, c, P, N, R,
+// S, l}: q the orientation, rho the radius of a ball that rolls inside, P = 1 - 1/(e - 1), N = 1 - 1/(n - 1), R = 1/2 -
+// 1/e, S = 1/2 - 1/n, l = Extent::turning. So a row of zeros, as those that pad the lanes are, is a sphere of no size.
 #pragma once
 
 #include "rvelab/grains/description.hpp"
@@ -21,8 +21,8 @@ struct SuperellipsoidGrain {
 
   template <template <class> class Of>
   struct Columns {
-    Of<double> half_x{}, half_y{}, half_z{};       ///< m; empty with other shapes
-    Of<double> exponent_xy{}, exponent_z{};  ///< e and n
+    Of<double> half_x{}, half_y{}, half_z{};  ///< m; empty with other shapes
+    Of<double> exponent_xy{}, exponent_z{};   ///< e and n
   };
   using Own = Columns<One>;
   template <template <class> class Of>
@@ -33,7 +33,8 @@ struct SuperellipsoidGrain {
       {"exponent_xy", "exponent_xy", &Columns<Of>::exponent_xy, "1"},
       {"exponent_z", "exponent_z", &Columns<Of>::exponent_z, "1"}};
 
-  static constexpr const char *allowed_lengths = "half axes > 0, the longest at most 10 times the shortest, exponents 2 to 20",
+  static constexpr const char *allowed_lengths =
+                                  "half axes > 0, the longest at most 10 times the shortest, exponents 2 to 20",
                               *allowed_in_tables = "half axes > 0, at most 10 times each other, exponents 2 to 20";
   static bool allowed(const Own& own);
   static constexpr const char* radius_in_words = "that of the sphere of its volume";

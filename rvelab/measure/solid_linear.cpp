@@ -19,9 +19,9 @@ Matrix3 cross_of(const Vector3& a) {
 /// sizes a contact cannot tell.
 Matrix3 curvature_radii(const GrainState& grain, const Matrix3& axes, const Vector3& n) {
   const auto column = [&](int k) { return Triple<double>{axes(0, k), axes(1, k), axes(2, k)}; };
-  const SupportAt<double> at = support_at(plain_form_of(superellipsoid_of(grain)),
-                                          SuperellipsoidAxes<double>{column(0), column(1), column(2)},
-                                          Triple<double>{n.x(), n.y(), n.z()});
+  const SupportAt<double> at =
+      support_at(plain_form_of(superellipsoid_of(grain)), SuperellipsoidAxes<double>{column(0), column(1), column(2)},
+                 Triple<double>{n.x(), n.y(), n.z()});
   const double most = 1e6 * grain.radius;
   Matrix3 radii = Matrix3::Zero();
   for (const SupportMode<double>& mode : {at.xy, at.z}) {
@@ -37,21 +37,24 @@ Matrix3 curvature_radii(const GrainState& grain, const Matrix3& axes, const Vect
 LinearOutlineContact linearised_solids(const ContactState& contact, const GrainState& grain_i, const Matrix3& axes_i,
                                        const GrainState& grain_j, const Matrix3& axes_j) {
   const Vector3 &n = contact.normal, &ft = contact.tangential_force, &moment = contact.rolling_moment;
-  const Vector3 &xi = contact.arm_i, &xj = contact.arm_j, half = 0.5 * contact.overlap * n, pi = xi + half, pj = xj - half;
+  const Vector3 &xi = contact.arm_i, &xj = contact.arm_j, half = 0.5 * contact.overlap * n, pi = xi + half,
+                pj = xj - half;
   const Matrix3 across = Matrix3::Identity() - n * n.transpose();
   ContactMatrix db = ContactMatrix::Zero(), turn_i = ContactMatrix::Zero(), turn_j = ContactMatrix::Zero();
   db.block<3, 3>(0, 0).setIdentity();
   turn_i.block<3, 3>(0, 3).setIdentity();
   turn_j.block<3, 3>(0, 6).setIdentity();
   // theta x a = -a x theta
-  const auto turned_by = [](const ContactMatrix& theta, const Vector3& a) -> ContactMatrix { return -cross_of(a) * theta; };
+  const auto turned_by = [](const ContactMatrix& theta, const Vector3& a) -> ContactMatrix {
+    return -cross_of(a) * theta;
+  };
 
   const ContactMatrix moved = db + turned_by(turn_j, xj) - turned_by(turn_i, xi);
   const ContactRow overlap = -n.transpose() * moved;
   const Matrix3 ci = curvature_radii(grain_i, axes_i, n), cj = curvature_radii(grain_j, axes_j, -n);
   const Matrix3 stiff = ci + cj - contact.overlap * across + grain_i.radius * n * n.transpose();
-  const ContactMatrix push = across * (db + turned_by(turn_j, pj) - turned_by(turn_i, pi)) +
-                             ci * turned_by(turn_i, n) + cj * turned_by(turn_j, n);
+  const ContactMatrix push = across * (db + turned_by(turn_j, pj) - turned_by(turn_i, pi)) + ci * turned_by(turn_i, n) +
+                             cj * turned_by(turn_j, n);
   const ContactMatrix dn = across * stiff.ldlt().solve(push);
 
   const ContactRow twist = 0.5 * n.transpose() * (turn_i + turn_j);

@@ -1,8 +1,8 @@
 // A contact of two superellipsoids, linearised: how force and torques change with branch and rotations.
 //
-// With n the normal, x_i and x_j the contact point from either centre, p_i = x_i + delta/2 n and p_j = x_j - delta/2 n the
-// points of both surfaces, C the tensors of their radii of curvature across n, P = I - n n and u = db + dtheta_j x x_j -
-// dtheta_i x x_i the motion of the material points at the contact:
+// With n the normal, x_i and x_j the contact point from either centre, p_i = x_i + delta/2 n and p_j = x_j - delta/2 n
+// the points of both surfaces, C the tensors of their radii of curvature across n, P = I - n n and u = db + dtheta_j x
+// x_j - dtheta_i x x_i the motion of the material points at the contact:
 //   d delta = -n.u                                                     a turn of n changes nothing
 //   (C_i + C_j - delta) dn = P (db + dtheta_j x p_j - dtheta_i x p_i) + C_i (dtheta_i x n) + C_j (dtheta_j x n)
 //   d f_n   = k_n d delta

@@ -301,9 +301,9 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
   Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, stop)
             : moves_as_body(recipe.shape) ? solids_by_compression(recipe, graded, friction, uniform, stop)
-            : recipe.clumps ? clumps_by_compression(recipe, graded, friction, uniform, stop)
-            : growth        ? by_growth(recipe, graded, friction, uniform, stop)
-                            : by_compression(recipe, graded, friction, uniform, stop);
+            : recipe.clumps               ? clumps_by_compression(recipe, graded, friction, uniform, stop)
+            : growth                      ? by_growth(recipe, graded, friction, uniform, stop)
+                                          : by_compression(recipe, graded, friction, uniform, stop);
 
   rve = steered(rve, recipe, stop);
   Draw result;

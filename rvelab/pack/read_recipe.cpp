@@ -39,8 +39,9 @@ void read_pack(TableReader& reader, RecipeFile& file) {
   auto shape = ShapeName(recipe.shape);
   auto members = MemberName::sphere;
   reader.choice("shape", shape, shapes,
-                of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D; clump: bodies of discs or spheres, pack.members; "
-                "ellipsoid: superellipsoid with exponents of 2, 3D");
+                of_dimension(2) + ": 2D; " + of_dimension(3) +
+                    ": 3D; clump: bodies of discs or spheres, pack.members; "
+                    "ellipsoid: superellipsoid with exponents of 2, 3D");
   reader.choice("members", members, {"disc", "sphere"}, "shape = clump: what bodies are made of, 2D or 3D");
   recipe.clumps = int(shape) == shape_count;
   file.ellipsoids = int(shape) == shape_count + 1;
@@ -55,8 +56,8 @@ void read_pack(TableReader& reader, RecipeFile& file) {
                       "seed of all random numbers; further specimens of --count take the next seeds");
   reader.number("thickness_m", recipe.thickness, "m", {positive, {{1e-7, 10}}}, "2D: thickness of the slab");
   if (dimension_of(recipe.shape) == 3)
-    reader.refuse("thickness_m", std::string("contradicts pack.") + (recipe.clumps ? "members" : "shape") +
-                                     " = " + as_toml(recipe.clumps ? "sphere" : shapes[std::size_t(shape)]) +
+    reader.refuse("thickness_m", std::string("contradicts pack.") + (recipe.clumps ? "members" : "shape") + " = " +
+                                     as_toml(recipe.clumps ? "sphere" : shapes[std::size_t(shape)]) +
                                      "; allowed: in 2D only; remove one");
   reader.choice("cell", recipe.oriented, {"upright", "oriented"},
                 "upright: square or cube; oriented: a lattice that compression along the axes never makes slender "
@@ -79,8 +80,9 @@ void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
   if (is_round(shape)) others.push_back("bedding_spread_deg");
   for (const char* name : others)
     reader.refuse(name, "contradicts pack.shape = " + as_toml(std::string(rvelab::name(shape))) + "; allowed: with " +
-                            (std::string(name) == "bedding_spread_deg" ? names_of_shapes([](Shape each) { return !is_round(each); }, true)
-                                                          : names_of_shapes(keeps_axis, true)) +
+                            (std::string(name) == "bedding_spread_deg"
+                                 ? names_of_shapes([](Shape each) { return !is_round(each); }, true)
+                                 : names_of_shapes(keeps_axis, true)) +
                             " only; remove one");
   if (!others.empty()) return;
   if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio) {
@@ -441,7 +443,8 @@ std::vector<Key> recipe_keys() {
     all.insert(all.end(), keys.begin(), keys.end());
   };
   document("pack", read_pack);
-  document("grains", [](TableReader& reader, RecipeFile& file) { read_fraction(reader, file.recipe, file.ellipsoids); });
+  document("grains",
+           [](TableReader& reader, RecipeFile& file) { read_fraction(reader, file.recipe, file.ellipsoids); });
   document("target", read_target);
   document("preparation", read_preparation);
   return all;

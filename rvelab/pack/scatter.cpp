@@ -116,8 +116,8 @@ namespace {
 /// Half axes and exponents of the grain that was added last: of the volume of the sphere of its radius.
 void form_solid(const GrainFraction& fraction, Grains& grains) {
   const Vector3& half = fraction.half_axes;
-  const double scale = grains.radius.back() / equivalent_radius_of({half[0], half[1], half[2], fraction.exponent_xy,
-                                                                    fraction.exponent_z});
+  const double scale = grains.radius.back() /
+                       equivalent_radius_of({half[0], half[1], half[2], fraction.exponent_xy, fraction.exponent_z});
   grains.half_x.push_back(scale * half[0]);
   grains.half_y.push_back(scale * half[1]);
   grains.half_z.push_back(scale * half[2]);
@@ -216,7 +216,8 @@ void put_clumps(const std::vector<const Clump*>& clumps, const Grains& graded, c
 
 namespace {
 
-/// z of the body within `spread` degrees of the vertical, directions equally frequent, and turned about it by any angle.
+/// z of the body within `spread` degrees of the vertical, directions equally frequent, and turned about it by any
+/// angle.
 Turn bedded_turn(double spread, Uniform& uniform) {
   const auto half_angle = [](double degrees) { return direction_of(0.5 * degrees); };
   const double least = direction_of(spread)[0], cosine = least + (1 - least) * uniform();

@@ -149,8 +149,9 @@ void add_grains(std::vector<Array>& to) {
   to.push_back(of_grains("grains/moment_of_inertia_kg_m2", "kg m^2", "about its centre",
                          [](const Read&, const GrainState& grain) { return grain.inertia; }));
   to.push_back(column(
-      "grains/inertia_tensor_kg_m2", "kg m^2", "of bodies (clumps, superellipsoids): about its centre; not there of other grains",
-      RVELAB_OF_GRAINS, [](const Read& state) { return state.network.moments.size(); },
+      "grains/inertia_tensor_kg_m2", "kg m^2",
+      "of bodies (clumps, superellipsoids): about its centre; not there of other grains", RVELAB_OF_GRAINS,
+      [](const Read& state) { return state.network.moments.size(); },
       [](const Read& state, std::size_t k) -> Matrix3 {
         const Matrix3& turn = state.network.cell.rotation;
         return turn * state.network.moments[k] * turn.transpose();

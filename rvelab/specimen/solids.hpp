@@ -6,8 +6,8 @@
 
 namespace rvelab {
 
-/// Adds a grain and its body behind those that are there. `position`: of its centre, cell frame; `orientation`: x y z of
-/// the shape to the cell frame.
+/// Adds a grain and its body behind those that are there. `position`: of its centre, cell frame; `orientation`: x y z
+/// of the shape to the cell frame.
 void add_superellipsoid(Specimen& specimen, const Superellipsoid& shape, const Vector3& position,
                         const Turn& orientation, std::int32_t material = 0);
 

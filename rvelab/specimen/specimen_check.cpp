@@ -267,7 +267,8 @@ class Relations {
       refuse(std::string("bodies of ") + name(s.shape) + "s; allowed: of discs, spheres or superellipsoids");
     if (has_any(s))
       advise(
-          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps or superellipsoids yet; take "
+          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps or "
+          "superellipsoids yet; take "
           "grains that move by themselves, or leave the interactions out");
     if (s.contact.slip != Slip::consistent)
       refuse(std::string("contact/slip = \"") + name(s.contact.slip) + "\" with bodies; allowed: \"consistent\"");

@@ -8,7 +8,8 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("ellipsoids are packed, compressed, gone on with and exported with axes that ParaView draws") {
   const Workplace here;
-  const Outcome packed = here.run("pack pack_ellipsoids -o S.h5 --set pack.number=40 --set target.unbalanced=1e-4 --json");
+  const Outcome packed =
+      here.run("pack pack_ellipsoids -o S.h5 --set pack.number=40 --set target.unbalanced=1e-4 --json");
   INFO(packed.errors);
   REQUIRE(packed.code == 0);
   const auto told = nlohmann::json::parse(here.run("inspect S.h5 --json").output);

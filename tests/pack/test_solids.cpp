@@ -91,8 +91,8 @@ TEST_CASE("bedded ellipsoids lie within the angle that is asked for, others ever
     pack::Recipe recipe = recipe_of(60, 2, 2);
     recipe.fractions[0].bedding_spread = spread;
     recipe.preparation.friction = 0.5;
-    const pack::RecipeFile file = pack::parse_recipe(
-        solid_recipe, "solids.toml", {"grains.bedding_spread_deg=" + std::to_string(spread)});
+    const pack::RecipeFile file =
+        pack::parse_recipe(solid_recipe, "solids.toml", {"grains.bedding_spread_deg=" + std::to_string(spread)});
     CHECK(file.recipe.fractions[0].bedding_spread == spread);
     Uniform uniform(1);
     Specimen s;
@@ -116,8 +116,8 @@ TEST_CASE("a recipe of ellipsoids reads half axes and exponents, and says what i
   const pack::RecipeFile file = pack::parse_recipe(solid_recipe, "solids.toml", {});
   CHECK(file.recipe.shape == Shape::superellipsoid);
   CHECK(file.recipe.fractions[0].exponent_z == 2);
-  const pack::RecipeFile blocks = pack::parse_recipe(
-      solid_recipe, "solids.toml", {"pack.shape=superellipsoid", "grains.exponents=[4, 8]"});
+  const pack::RecipeFile blocks =
+      pack::parse_recipe(solid_recipe, "solids.toml", {"pack.shape=superellipsoid", "grains.exponents=[4, 8]"});
   CHECK(blocks.recipe.fractions[0].exponent_xy == 4);
   CHECK(blocks.recipe.fractions[0].exponent_z == 8);
   CHECK(pack::parse_recipe(blocks.resolved, "again.toml", {}).recipe.fractions[0].exponent_z == 8);

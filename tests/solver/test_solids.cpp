@@ -193,7 +193,8 @@ TEST_CASE("A crystal of superellipsoids that touch at their tips bears what its 
     CHECK(coordination_number(rve.network()) == 6);
     const Eigen::MatrixXd affine = affine_tangent(rve.network());
     CHECK(affine(0, 0) == Approx(kn * edges[0] * edges[0] / edges.prod()).epsilon(1e-9));
-    // Engineering shear xy of the contacts along x and y, springs kt across each; the stress there is adds a thousandth.
+    // Engineering shear xy of the contacts along x and y, springs kt across each; the stress there is adds a
+    // thousandth.
     CHECK(affine(5, 5) == Approx(0.25 * kt * (edges[0] * edges[0] + edges[1] * edges[1]) / edges.prod()).epsilon(2e-3));
     rve.apply(strained(-1e-4, 5e-5, 0), 0);
     const Vector3 pressed(edges[0] * (1 - 1e-4), edges[1] * (1 + 5e-5), edges[2]);
@@ -226,7 +227,7 @@ TEST_CASE("A block slides over another as a box: the impulse is on the cone of f
 
 TEST_CASE("Superellipsoids bear stress in balance; sums, network and a list made anew agree") {
   for (const Superellipsoid& shape : {ellipsoid, blocky}) {
-    const Specimen packed = pressed_solids(4, shape, 11);
+    const Specimen packed = pressed_solids(3, shape, 11);
     Rve rve(packed);
     const double pressure = mean_pressure(rve.stress(), 3);
     CAPTURE(shape.e, pressure, rve.unbalanced_ratio());
@@ -241,8 +242,8 @@ TEST_CASE("Superellipsoids bear stress in balance; sums, network and a list made
     for (const Body& body : packed.bodies) solid += body.volume;
     CHECK(std::abs(void_ratio(network) - (rve.cell().volume() - solid) / solid) < 1e-10);
     // Large shear: wrapped and reduced cells, grains that turn within their list.
-    for (int k = 0; k < 8; ++k) {
-      rve.apply(strained(0, 0, 0.075), 0);
+    for (int k = 0; k < 4; ++k) {
+      rve.apply(strained(0, 0, 0.1), 0);
       const Specimen now = rve.specimen();
       check_specimen(now);
       Specimen anew = now;

@@ -85,7 +85,8 @@ struct TwoGrains {
     const OverlapPair pair = {form_of(shape[0]), form_of(shape[1]), axes[0], axes[1], difference(at[1], at[0])};
     Triple<double> guess = {0, 0, 0};
     const ContactsOf<double> contact = contacts_of(pair, guess);
-    const Vector force = times(Hertz{}(std::max(0.0, contact.overlap)), contact.n), arm_j = difference(contact.point, pair.branch);
+    const Vector force = times(Hertz{}(std::max(0.0, contact.overlap)), contact.n),
+                 arm_j = difference(contact.point, pair.branch);
     return {contact.overlap, force, cross(force, contact.point), cross(arm_j, force)};
   }
 };

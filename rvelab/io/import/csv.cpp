@@ -62,10 +62,10 @@ std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Speci
 /// Material of each row: by name or number where the file has the column, else the only one.
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
   if (table.has("body"))
-    throw InputError(
-        table.location(0) +
-        ": the column `body` is of clumps or superellipsoids, which tables cannot bring back: bodies have a motion of their own; "
-        "allowed: a table of grains that move by themselves; keep these in HDF5 files");
+    throw InputError(table.location(0) +
+                     ": the column `body` is of clumps or superellipsoids, which tables cannot bring back: bodies have "
+                     "a motion of their own; "
+                     "allowed: a table of grains that move by themselves; keep these in HDF5 files");
   std::vector<std::int32_t> index(table.rows(), 0);
   if (!table.has("material")) {
     const bool several = specimen.materials.size() > 1;

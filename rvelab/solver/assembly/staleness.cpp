@@ -43,8 +43,8 @@ double measured_displacements(const Model& model, const Assembly& assembly, cons
         const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
         const double dz = model.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
         if constexpr (outlines == Outlines::in_space) {
-          const double moved = std::sqrt(dx * dx + dy * dy + dz * dz) +
-                               solid_moved_by_turn(assembly.state.list.orientations[g], x);
+          const double moved =
+              std::sqrt(dx * dx + dy * dy + dz * dz) + solid_moved_by_turn(assembly.state.list.orientations[g], x);
           here.add(moved * moved);
         } else {
           here.add(dx * dx + dy * dy + dz * dz);

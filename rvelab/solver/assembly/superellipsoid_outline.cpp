@@ -30,8 +30,7 @@ double shown_gap(const OverlapPair& pair, double enough) {
     const OverlapAt<double> at = overlap_at(pair, n);
     largest = std::max(largest, -at.overlap);
     if (largest > enough) break;
-    n = step == 0 ? first_direction(pair)
-                  : turned_by(n, next_step(at, pair.form_i.rolling + pair.form_j.rolling).turn);
+    n = step == 0 ? first_direction(pair) : turned_by(n, next_step(at, pair.form_i.rolling + pair.form_j.rolling).turn);
   }
   return largest;
 }
@@ -39,10 +38,8 @@ double shown_gap(const OverlapPair& pair, double enough) {
 double shown_gap_of_ellipsoids(const OverlapPair& pair) {
   const EllipsoidMatrix<double> i = ellipsoid_matrix(pair.form_i.half, pair.axes_i),
                                 j = ellipsoid_matrix(pair.form_j.half, pair.axes_j);
-  const EllipsoidMatrix<double> sum = {i.xx + j.xx, i.yy + j.yy, i.zz + j.zz, i.yz + j.yz,
-                                       i.xz + j.xz, i.xy + j.xy, i.rolling};
   double largest = -1e300;
-  for (const Triple<double>& n : {of_length_1(pair.branch), of_length_1(along_inverse(sum, pair.branch))})
+  for (const Triple<double>& n : {of_length_1(pair.branch), first_direction(EllipsoidPair<double>{i, j, pair.branch})})
     largest = std::max(largest, dot(n, pair.branch) - ellipsoid_at(i, n).height - ellipsoid_at(j, n).height);
   return largest;
 }
@@ -63,9 +60,9 @@ std::vector<double> forms_of(const Grains& grains) {
       last_rolling = rolling_radius_of(unit);
     }
     const SuperellipsoidForm<double> form = plain_form_of(s);
-    for (const double value : {s.c * last_rolling, s.a, s.b, s.c, 1 - form.share_xy, 1 - form.share_z,
-                               form.root_xy + 0.5, form.root_z + 0.5,
-                               SuperellipsoidGrain::extent(own_of<SuperellipsoidGrain>(grains, g)).turning})
+    for (const double value :
+         {s.c * last_rolling, s.a, s.b, s.c, 1 - form.share_xy, 1 - form.share_z, form.root_xy + 0.5, form.root_z + 0.5,
+          SuperellipsoidGrain::extent(own_of<SuperellipsoidGrain>(grains, g)).turning})
       forms.push_back(value);
   }
   return forms;
@@ -94,9 +91,18 @@ SolidPlace Outline<Shape::superellipsoid>::place(const Branch& b, const double* 
     const double gap = shown_gap_of_ellipsoids(pair);
     if (gap > 0) return solid_place(b, -gap, of_length_1(pair.branch), {0, 0, 0});
   }
-  double guess[8] = {};
-  const ContactsOf<double> at =
-      ellipsoids ? contacts_in<1, true>(pair, guess) : contacts_in<1, false>(pair, guess);
+  if (!ellipsoids) {
+    Triple<double> guess = {0, 0, 0};
+    const ContactsOf<double> at = contacts_of(pair, guess);
+    return solid_place(b, at.overlap, at.n, at.point);
+  }
+  const EllipsoidPair<double> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                                      ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
+  const ContactsOf<double> at = contacts_of(both, [&](int) {
+    const SuperellipsoidContact found = contact_of(pair);
+    return ContactsOf<double>{found.overlap, found.n, found.point, radii_of_curvature(found.at.i),
+                              radii_of_curvature(found.at.j)};
+  });
   return solid_place(b, at.overlap, at.n, at.point);
 }
 

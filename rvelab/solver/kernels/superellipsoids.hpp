@@ -5,8 +5,8 @@
 //   slip and opening: those of v + w_j x x_j - w_i x x_i,   T_i = -x_i x F,   T_j = x_j x F,   F the force on j
 //
 // x_i - x_j is the branch, whatever they are, so that moments balance to rounding. The overlap changes by -n.(that
-// velocity): h_i(n) changes by n.(w x x) where the body turns, and a turn of n changes nothing. So the springs do no work
-// but their own.
+// velocity): h_i(n) changes by n.(w x x) where the body turns, and a turn of n changes nothing. So the springs do no
+// work but their own.
 #pragma once
 
 #include "rvelab/solver/kernels/space.hpp"
@@ -24,8 +24,12 @@ struct SuperellipsoidColumns {
 
   SuperellipsoidForm<V> form() const {
     // Rows that pad the lanes hold zeros: they are spheres of 1e-30 m.
-    return {{half[0] + 1e-30, half[1] + 1e-30, half[2] + 1e-30}, 1.0 - half[3], 1.0 - rest[0],
-            rest[1] - 0.5, rest[2] - 0.5, rolling};
+    return {{half[0] + 1e-30, half[1] + 1e-30, half[2] + 1e-30},
+            1.0 - half[3],
+            1.0 - rest[0],
+            rest[1] - 0.5,
+            rest[2] - 0.5,
+            rolling};
   }
   SuperellipsoidAxes<V> axes() const {
     const V w = turn[0], x = turn[1], y = turn[2], z = turn[3];
@@ -67,68 +71,130 @@ inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> s
 struct SuperellipsoidScratch : SpaceScratch {
   ScratchColumn overlap;
   TripleColumn branch, arm_i, arm_j;
+  ScratchColumn matrix_i[7], matrix_j[7];  ///< ellipsoids
 };
 
-/// Contacts of W pairs: `Ellipsoids` where all exponents are 2. A guess is kept beside the pair (PairArrays::solid); the
-/// contact does not depend on it.
-template <int W, bool Ellipsoids>
-inline __attribute__((always_inline)) ContactsOf<typename Lanes<W>::V> contacts_in(
+template <int W, class V>
+inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch, const ContactsOf<V>& contacts, long k,
+                                                        SuperellipsoidScratch& s) {
+  const auto touch = contacts.overlap > 0.0;
+  const Triple<V> none = {V{}, V{}, V{}};
+  s.normal.store(k, contacts.n);
+  store_as(s.overlap.at + k, contacts.overlap);
+  s.arm_i.store(k, chosen(touch, contacts.point, none));
+  s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
+}
+
+/// Contacts of W pairs. A guess is kept beside each pair (PairArrays::solid); the contact does not depend on it.
+template <int W>
+inline __attribute__((always_inline)) ContactsOf<typename Lanes<W>::V> contacts_from_guess(
     const SuperellipsoidPair<typename Lanes<W>::V>& pair, double* solid) {
   using V = typename Lanes<W>::V;
-  if constexpr (Ellipsoids) {
-    const EllipsoidPair<V> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
-                                   ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
-    return contacts_of(both, [&](int lane) {
-      const OverlapPair one = {in_lane(pair.form_i, lane), in_lane(pair.form_j, lane), in_lane(pair.axes_i, lane),
-                               in_lane(pair.axes_j, lane), in_lane(pair.branch, lane)};
-      const SuperellipsoidContact found = contact_of(one);
-      return ContactsOf<double>{found.overlap, found.n, found.point, radii_of_curvature(found.at.i),
-                                radii_of_curvature(found.at.j)};
-    });
-  } else {
-    V guess[4];
-    columns_of<W>(solid, 8, guess);
-    Triple<V> direction = {guess[0], guess[1], guess[2]};
-    const ContactsOf<V> contacts = contacts_of(pair, direction);
-    const V next[4] = {direction.x, direction.y, direction.z, V{}};
-    rows_of<W>(next, solid, 8);
-    return contacts;
-  }
+  V guess[4];
+  columns_of<W>(solid, 8, guess);
+  Triple<V> direction = {guess[0], guess[1], guess[2]};
+  const ContactsOf<V> contacts = contacts_of(pair, direction);
+  const V next[4] = {direction.x, direction.y, direction.z, V{}};
+  rows_of<W>(next, solid, 8);
+  return contacts;
 }
 
 /// Branch, normal, overlap and arms. Not inlined: it is long, and the same for every law.
-template <int W, bool Ellipsoids>
+template <int W>
 __attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
                                                      long first, long count, SuperellipsoidScratch& s) {
   using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
-    const long at = first + k;
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, at);
-    const ContactsOf<V> contacts = contacts_in<W, Ellipsoids>(pair, p.solid + 8 * at);
-    const auto touch = contacts.overlap > 0.0;
-    const Triple<V> none = {V{}, V{}, V{}};
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
     s.branch.store(k, pair.branch);
-    s.normal.store(k, contacts.n);
-    store_as(s.overlap.at + k, contacts.overlap);
-    s.arm_i.store(k, chosen(touch, contacts.point, none));
-    s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, pair.branch), none));
+    put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, p.solid + 8 * (first + k)), k, s);
   }
 }
 
-/// What PlaceKernel asks for: n, overlap, contact point from the centre of i. `Ellipsoids`: as above.
+template <class V>
+inline __attribute__((always_inline)) void put_matrix(const EllipsoidMatrix<V>& m, long k, ScratchColumn* to) {
+  const V all[7] = {m.xx, m.yy, m.zz, m.yz, m.xz, m.xy, m.rolling};
+  for (int column = 0; column < 7; ++column) store_as(to[column].at + k, all[column]);
+}
+template <class V>
+inline __attribute__((always_inline)) EllipsoidMatrix<V> matrix_in(const ScratchColumn* from, long k) {
+  const auto at = [&](int column) { return load_as<V>(from[column].at + k); };
+  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
+}
+
+/// What a search finds for one lane of W pairs.
+template <int W>
+struct EllipsoidSearch {
+  const StepConstants& c;
+  const PairArrays& p;
+  const double* rows;
+  long at;
+  __attribute__((noinline)) ContactsOf<double> operator()(int lane) const {
+    const SuperellipsoidContact found = contact_of(superellipsoid_pair<1>(c, p, rows, at + lane));
+    return {found.overlap, found.n, found.point, radii_of_curvature(found.at.i), radii_of_curvature(found.at.j)};
+  }
+};
+
+/// The same of ellipsoids, the pairs of a chunk side by side: roots and divisions of one block of lanes fill the time
+/// of another's.
+template <int W>
+__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                long first, long count, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  long blocks[chunk_pairs / W], open = 0;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    const EllipsoidPair<V> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                                   ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
+    s.branch.store(k, pair.branch);
+    put_matrix(both.i, k, s.matrix_i);
+    put_matrix(both.j, k, s.matrix_j);
+    s.normal.store(k, first_direction(both));
+    blocks[open++] = k;
+  }
+  for (int evaluation = 0; open > 0; ++evaluation) {
+    const long all = open;
+    open = 0;
+    for (long block = 0; block < all; ++block) {
+      const long k = blocks[block];
+      const EllipsoidPair<V> pair = {matrix_in<V>(s.matrix_i, k), matrix_in<V>(s.matrix_j, k),
+                                     s.branch.template load<V>(k)};
+      const Triple<V> n = s.normal.template load<V>(k);
+      const EllipsoidStep<V> step = ellipsoid_step(pair, n);
+      if (evaluation < superellipsoid_steps && any_of(!is_done(step))) {
+        s.normal.store(k, chosen(is_done(step), n, turned_by(n, step.turn)));
+        blocks[open++] = k;
+      } else {
+        put_contacts<W>(pair.branch, contacts_by(pair, n, step, EllipsoidSearch<W>{c, p, rows, first + k}), k, s);
+      }
+    }
+  }
+}
+
+/// What PlaceKernel asks for: n, overlap, contact point from the centre of i.
 template <int W, bool Ellipsoids>
 void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, const double* rows, long begin, long end,
                                 double* places) {
   using V = typename Lanes<W>::V;
-  for (long at = begin; at < end; at += W) {
-    double guess[8 * W];  // not kept: threads may look at one pair together
-    for (int lane = 0; lane < W; ++lane)
-      for (int k = 0; k < 8; ++k) guess[8 * lane + k] = p.solid[8 * (at + lane) + k];
-    const ContactsOf<V> contacts = contacts_in<W, Ellipsoids>(superellipsoid_pair<W>(c, p, rows, at), guess);
-    const V near[4] = {contacts.n.x, contacts.n.y, contacts.n.z, contacts.overlap},
-            far[4] = {contacts.point.x, contacts.point.y, contacts.point.z, V{}};
-    rows_of<W>(near, places + place_row_length * at, place_row_length);
-    rows_of<W>(far, places + place_row_length * at + 4, place_row_length);
+  SuperellipsoidScratch s;
+  double guesses[8 * chunk_pairs];  // not kept: threads may look at one pair together
+  for (long first = begin; first < end; first += chunk_pairs) {
+    const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
+    if constexpr (Ellipsoids) {
+      ellipsoid_places<W>(c, p, rows, first, count, s);
+    } else {
+      for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
+      for (long k = 0; k < count; k += W) {
+        const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+        put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, guesses + 8 * k), k, s);
+      }
+    }
+    for (long k = 0; k < count; k += W) {
+      const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
+      const V near[4] = {n.x, n.y, n.z, load_as<V>(s.overlap.at + k)}, far[4] = {point.x, point.y, point.z, V{}};
+      rows_of<W>(near, places + place_row_length * (first + k), place_row_length);
+      rows_of<W>(far, places + place_row_length * (first + k) + 4, place_row_length);
+    }
   }
 }
 
@@ -141,7 +207,10 @@ struct SuperellipsoidPairs {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    superellipsoid_places<T::W, Ellipsoids>(c, p, rows, first, count, s);
+    if constexpr (Ellipsoids)
+      ellipsoid_places<T::W>(c, p, rows, first, count, s);
+    else
+      superellipsoid_places<T::W>(c, p, rows, first, count, s);
   }
   template <class V>
   static inline __attribute__((always_inline)) V overlap(long k, const Scratch& s) {
@@ -195,8 +264,8 @@ struct SuperellipsoidPairs {
   static bool may_touch(const StepConstants& c, const PairArrays& p, const double* rows, long first);
 };
 
-/// Whether one of eight pairs is not shown to be apart: of ellipsoids by the direction in which the branch leaves that of
-/// the summed matrices, of others by the direction kept, or the branch where there is none.
+/// Whether one of eight pairs is not shown to be apart: of ellipsoids by the direction in which the branch leaves that
+/// of the summed matrices, of others by the direction kept, or the branch where there is none.
 template <bool Ellipsoids>
 template <int W>
 __attribute__((noinline)) bool SuperellipsoidPairs<Ellipsoids>::may_touch(const StepConstants& c, const PairArrays& p,
@@ -207,9 +276,7 @@ __attribute__((noinline)) bool SuperellipsoidPairs<Ellipsoids>::may_touch(const 
     if constexpr (Ellipsoids) {
       const EllipsoidMatrix<V> i = ellipsoid_matrix(pair.form_i.half, pair.axes_i),
                                j = ellipsoid_matrix(pair.form_j.half, pair.axes_j);
-      const EllipsoidMatrix<V> sum = {i.xx + j.xx, i.yy + j.yy, i.zz + j.zz, i.yz + j.yz,
-                                      i.xz + j.xz, i.xy + j.xy, i.rolling};
-      const Triple<V> n = of_length_1(along_inverse(sum, pair.branch));
+      const Triple<V> n = first_direction(EllipsoidPair<V>{i, j, pair.branch});
       const V heights = square_root(dot(n, times(i, n))) + square_root(dot(n, times(j, n)));
       if (any_of(!(heights - dot(n, pair.branch) < -1e-12 * heights))) return true;
     } else {

@@ -51,8 +51,8 @@ inline __attribute__((always_inline)) Eigen::Matrix<double, D, 1> times(const Up
     return {m.xx * v[0] + (m.xy * v[1] + m.xz * v[2]), m.yy * v[1] + m.yz * v[2], m.zz * v[2]};
 }
 
-/// Of a body with its members; `Solid`: one grain with a shape of its own. Where the plane needs less than space it is written apart: a sub-step of clumps of discs
-/// took 1.9 times as long with quaternions.
+/// Of a body with its members; `Solid`: one grain with a shape of its own. Where the plane needs less than space it is
+/// written apart: a sub-step of clumps of discs took 1.9 times as long with quaternions.
 template <int D, bool Solid>
 class BodyMover {
  public:

@@ -163,7 +163,8 @@ class TermsOfPairs {
     t.ny = n.y / geometry.along_length();
     if constexpr (D == 3) t.nz = n.z / geometry.along_length();
     if constexpr (moves_as_body(shape)) {
-      // To the surfaces, half an overlap beyond the contact point: of spheres the radius, as where they move by themselves.
+      // To the surfaces, half an overlap beyond the contact point: of spheres the radius, as where they move by
+      // themselves.
       for (int side = 0; side < 2; ++side) {
         const Branch x = side == 0 ? geometry.point : geometry.point_j();
         const double to_surface = side == 0 ? 0.5 * overlap : -0.5 * overlap;
@@ -206,8 +207,8 @@ inline __attribute__((always_inline)) void add(const Model& model, const PairTer
     sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * outer * outer + 2 * t.firm.rolling +
                                                           normal_to_rotation(t.firm.normal, farthest, r));
     if (!t.touching) return;
-    add_to<D>(sums.stiffness, stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx,
-                                                 t.ny, t.nz));
+    add_to<D>(sums.stiffness,
+              stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx, t.ny, t.nz));
     sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
                      normal_to_rotation(t.now.normal, turn, r);
   } else if constexpr (!is_round(shape)) {
