@@ -13,6 +13,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/records/quantities.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/specimen/solids.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -22,6 +23,35 @@ void add_measured(Listing& listing, const records::QuantityText& text, double va
   listing.add(text.name, value, unit == "1" ? "" : unit);
 }
 
+/// Means over the grains: shortest over longest half axis, that in between over the longest, and Wadell's sphericity.
+/// All are convex.
+void add_forms(Listing& listing, const Network& network) {
+  double aspect = 0, elongation = 0, sphericity = 0, blockiness = 0;
+  Superellipsoid last{};
+  double of_last = 0;
+  for (const GrainState& grain : network.grains) {
+    const Superellipsoid s = superellipsoid_of(grain);
+    double half[3] = {s.a, s.b, s.c};
+    std::sort(half, half + 3);
+    aspect += half[0] / half[2];
+    elongation += half[1] / half[2];
+    const Superellipsoid unit = {s.a / s.c, s.b / s.c, 1, s.e, s.n};  // many grains are of one form
+    const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-12 * std::abs(y); };
+    if (!near(unit.a, last.a) || !near(unit.b, last.b) || unit.e != last.e || unit.n != last.n) {
+      last = unit;
+      of_last = sphericity_of(unit);
+    }
+    sphericity += of_last;
+    blockiness = std::max({blockiness, s.e, s.n});
+  }
+  const double n = double(network.grains.size());
+  listing.add("aspect_shortest_over_longest", aspect / n);
+  listing.add("aspect_middle_over_longest", elongation / n);
+  listing.add("largest_exponent", blockiness);
+  listing.add("sphericity", sphericity / n);
+  listing.add("convexity", 1.0);
+}
+
 void add_state(Listing& listing, const Rve& rve) {
   const records::MeasuredState state(rve);
   const Network& network = state.network;
@@ -29,8 +59,9 @@ void add_state(Listing& listing, const Rve& rve) {
   const Matrix3 stress = rve.stress();
   listing.add("dimension", dimension);
   listing.add("grains", network.grains.size());
-  if (network.has_bodies()) listing.add("members", network.members.size());
+  if (network.has_bodies() && !network.has_solids()) listing.add("members", network.members.size());
   listing.add("contacts", network.contacts.size());
+  if (network.has_solids()) add_forms(listing, network);
   each_interaction_law([&](auto, auto law) {
     using Law = decltype(law);
     const Interactions all = rve.interactions();

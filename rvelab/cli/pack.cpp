@@ -78,7 +78,7 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   made["seed"] = job.what.recipe.seed;
   made["void_ratio"] = packing.void_ratio;
   made["stress_Pa"] = row_major(rve.stress().topLeftCorner(dimension, dimension));
-  if (network.has_bodies()) made["members"] = network.members.size();
+  if (network.has_bodies() && !network.has_solids()) made["members"] = network.members.size();
   made["contacts"] = network.contacts.size();
   made["coordination_number"] = coordination_number(network);
   made["fabric_anisotropy"] = network.contacts.empty() ? Json() : Json(fabric_anisotropy(fabric(network), dimension));

@@ -8,9 +8,10 @@
 // touch in the triangular lattice of discs stretched along them; `has_hertz_curvature`: contact/hertz_curvature.hpp
 // holds for it; its inertia, kg m^2. The radius is that of the disc of its area, or of the sphere of its volume.
 //
-// A shape that is not round lies in the plane and keeps an axis of length 1 (Grains::orientation), the long one. It
-// adds columns of lengths to those of all grains and says which of them are allowed, what radius, outline and curvature
-// they make, and which lengths have an aspect ratio; beside that, solver/assembly/outline.hpp.
+// A shape that is not round adds columns of lengths to those of all grains and says which of them are allowed, what
+// radius and outline they make; beside that, solver/assembly/outline.hpp. In the plane it keeps an axis of length 1
+// (Grains::orientation), the long one, and says the curvature and which lengths have an aspect ratio. In space it is
+// `rigid`: each grain is a body of its own (Specimen::bodies), which has orientation and motion.
 #pragma once
 
 namespace rvelab {
@@ -19,12 +20,13 @@ namespace rvelab {
 template <class T>
 using One = T;
 
-/// A column of lengths, m, by its member among the columns of its shape.
+/// A column of lengths, or of pure numbers, by its member among the columns of its shape.
 template <class Columns, class Entries>
 struct OwnColumn {
   const char* dataset;  ///< name in specimen files and XDMF
   const char* csv;      ///< name in CSV tables
   Entries Columns::*entries;
+  const char* unit = "m";
 };
 
 /// Aspect ratios that contacts of grains which are not round are held to be right for.
@@ -50,7 +52,7 @@ struct TurnValues {
 /// Of grains that are round: radius and place say all. `Self`: the shape.
 template <class Self>
 struct RoundGrain {
-  static constexpr bool round = true, has_hertz_curvature = false;
+  static constexpr bool round = true, rigid = false, has_hertz_curvature = false;
   template <template <class> class Of>
   struct Columns {};
 };

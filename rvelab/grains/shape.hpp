@@ -5,11 +5,13 @@
 #include "rvelab/grains/disc.hpp"
 #include "rvelab/grains/ellipse.hpp"
 #include "rvelab/grains/sphere.hpp"
+#include "rvelab/grains/superellipsoid.hpp"
 
 namespace rvelab {
 
 /// Enumerator and description of each, in the order of Shape.
-#define RVELAB_SHAPES(each) each(disc, Disc) each(sphere, Sphere) each(ellipse, Ellipse)
+#define RVELAB_SHAPES(each) \
+  each(disc, Disc) each(sphere, Sphere) each(ellipse, Ellipse) each(superellipsoid, SuperellipsoidGrain)
 
 #define RVELAB_ENUMERATOR(shape, description) shape,
 #define RVELAB_DESCRIBED(shape, description) \
@@ -56,6 +58,7 @@ static inline __attribute__((always_inline)) constexpr auto with_shape(Shape sha
 RVELAB_PROPERTY(const char*, name, name)
 RVELAB_PROPERTY(int, dimension_of, dimension)
 RVELAB_PROPERTY(bool, is_round, round)
+RVELAB_PROPERTY(bool, moves_as_body, rigid)
 RVELAB_PROPERTY(bool, pairs_hold_radii, pairs_hold_radii)
 RVELAB_PROPERTY(bool, fills_rows, fills_rows)
 RVELAB_PROPERTY(bool, has_hertz_curvature, has_hertz_curvature)
@@ -63,6 +66,9 @@ RVELAB_PROPERTY(int, row_length_of, row_length)
 RVELAB_PROPERTY(int, released_mass, released_mass)
 RVELAB_PROPERTY(int, released_inverse_inertia, released_inverse_inertia)
 #undef RVELAB_PROPERTY
+
+/// Whether each grain has an axis in the plane (Grains::orientation).
+constexpr bool keeps_axis(Shape shape) { return !is_round(shape) && !moves_as_body(shape); }
 
 /// The grains of this dimension that are round.
 constexpr Shape round_shape(int dimension) {

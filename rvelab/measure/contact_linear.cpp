@@ -34,7 +34,7 @@ struct Support {
 Support support_of(Shape shape, const GrainState& grain, double along, double across) {
   return with_shape(shape, [&](auto is) -> Support {
     using By = typename decltype(is)::By;
-    if constexpr (By::round) {
+    if constexpr (By::round || By::rigid) {
       return {along, across, 0, 0};
     } else {
       const Bend bend = By::bend(grain, along, across);

@@ -1,28 +1,53 @@
 #include "rvelab/measure/stored_contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rvelab/solver/assembly/outline.hpp"
+#include "rvelab/solver/assembly/superellipsoid_rows.hpp"
 
 namespace rvelab {
 
 namespace {
 
-/// Of grains that are not round.
-OutlinePlace place_of(const Specimen& specimen, const Contact& contact) {
+/// Overlap, normal and R*/r* (contact/hertz_curvature.hpp) of grains that are not round.
+struct StoredPlace {
+  double overlap = 0, radius_ratio = 1;
+  Vector3 normal = Vector3::Zero();
+};
+
+template <Shape shape>
+std::array<double, std::size_t(row_length_of(shape))> solid_row(const Specimen& specimen, std::int32_t k) {
+  std::array<double, std::size_t(row_length_of(shape))> row{};
+  const std::vector<double> form = form_of_grain(specimen.grains, std::size_t(k));
+  row[3] = form[0];
+  std::copy(form.begin() + 1, form.end(), row.begin() + 16);
+  put_orientation(specimen.bodies[std::size_t(k)].orientation, row.data());
+  return row;
+}
+
+StoredPlace place_of(const Specimen& specimen, const Contact& contact) {
   const Vector3 b = branch_of(specimen, contact);
-  return with_shape(specimen.shape, [&](auto is) -> OutlinePlace {
+  return with_shape(specimen.shape, [&](auto is) -> StoredPlace {
     using By = typename decltype(is)::By;
+    constexpr Shape shape = decltype(is)::value;
     if constexpr (By::round) {
       return {};
+    } else if constexpr (By::rigid) {
+      const auto i = solid_row<shape>(specimen, contact.i), j = solid_row<shape>(specimen, contact.j);
+      const auto at = Outline<shape>::place({b[0], b[1], b[2]}, i.data(), j.data());
+      return {at.overlap, 1, {at.normal.x, at.normal.y, at.normal.z}};
     } else {
-      constexpr Shape shape = decltype(is)::value;
       const auto row = [&](std::int32_t k) {
         const Vector3& axis = specimen.grains.orientation[std::size_t(k)];
         return LoneRow<shape>(own_of<By>(specimen.grains, std::size_t(k)), axis[0], axis[1]);
       };
-      return Outline<shape>::place({b[0], b[1], 0}, row(contact.i).row, row(contact.j).row);
+      const auto at = Outline<shape>::place({b[0], b[1], 0}, row(contact.i).row, row(contact.j).row);
+      const auto& radius = specimen.grains.radius;
+      return {at.overlap,
+              at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]),
+              {at.normal.x, at.normal.y, 0}};
     }
   });
 }
@@ -31,9 +56,8 @@ OutlinePlace place_of(const Specimen& specimen, const Contact& contact) {
 double overlap_root_of(const Specimen& specimen, const Contact& contact) {
   if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
     return std::sqrt(overlap_of(specimen, contact));
-  const OutlinePlace at = place_of(specimen, contact);
-  const auto& radius = specimen.grains.radius;
-  return std::sqrt(at.overlap * at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]));
+  const StoredPlace at = place_of(specimen, contact);
+  return std::sqrt(at.overlap * at.radius_ratio);
 }
 
 }  // namespace
@@ -46,8 +70,7 @@ Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
 
 Vector3 normal_of(const Specimen& specimen, const Contact& contact) {
   if (is_round(specimen.shape)) return branch_of(specimen, contact).normalized();
-  const Branch n = place_of(specimen, contact).normal;
-  return {n.x, n.y, 0};
+  return place_of(specimen, contact).normal;
 }
 
 double overlap_of(const Specimen& specimen, const Contact& contact) {

@@ -15,6 +15,7 @@
 #include "rvelab/measure/block_factors.hpp"
 #include "rvelab/measure/contact_linear.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/solid_linear.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 
 namespace rvelab {
@@ -79,7 +80,7 @@ Spring spring_of_bodies(const Network& network, const ContactState& contact) {
 Spring spring_of(const Network& network, const ContactState& contact) {
   const GrainState &i = network.grains[contact.i], &j = network.grains[contact.j];
   const bool unloads = rescales(network);
-  if (network.has_bodies()) return spring_of_bodies(network, contact);
+  if (network.has_bodies() && !network.has_solids()) return spring_of_bodies(network, contact);
   if (is_round(network.shape)) {
     Spring spring{&contact, rows_of(linearised(contact, i.radius, j.radius, network.model.slip)), Vector9::Zero()};
     if (!unloads) return spring;
@@ -88,7 +89,10 @@ Spring spring_of(const Network& network, const ContactState& contact) {
     spring.unloading = half.leftCols<3>() * contact.normal;
     return spring;
   }
-  const LinearOutlineContact linear = linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
+  const LinearOutlineContact linear =
+      network.has_solids()
+          ? linearised_solids(contact, i, network.axes[std::size_t(contact.i)], j, network.axes[std::size_t(contact.j)])
+          : linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
   Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (!unloads) return spring;
   const Matrix9 half = 0.5 * rows_of(linear.unloading);

@@ -148,6 +148,23 @@ Rve clumps_by_compression(const Recipe& recipe, const Grains& graded, double fri
   return rve;
 }
 
+/// The same of superellipsoids, by the spheres around them.
+Rve solids_by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
+                          const std::atomic<bool>* stop) {
+  Grains grains = graded;
+  double volume = 0;
+  for (const double reach : reach_of(recipe.shape, grains)) volume += grain_volume(recipe.shape, reach, 1);
+  volume *= (1 + 3 * approach_step * uniform()) / scattered_fraction(3);
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
+  Specimen s = assembly(recipe, friction, Grains{}, cell_of(recipe, volume));
+  put_solids(recipe, grains, uniform, s);
+  Rve rve(s);
+  rve.watch(stop);
+  approach(rve, 3);
+  press(recipe, rve);
+  return rve;
+}
+
 /// The grains are laid in rows that touch (regular.hpp), and the cell then shrinks as above.
 Rve by_rows(const Recipe& recipe, const Grains& graded, double friction, const std::atomic<bool>* stop) {
   Grains grains = graded;
@@ -283,9 +300,10 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   const Grains graded = graded_grains(recipe);
   const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
   Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, stop)
-            : recipe.clumps ? clumps_by_compression(recipe, graded, friction, uniform, stop)
-            : growth        ? by_growth(recipe, graded, friction, uniform, stop)
-                            : by_compression(recipe, graded, friction, uniform, stop);
+            : moves_as_body(recipe.shape) ? solids_by_compression(recipe, graded, friction, uniform, stop)
+            : recipe.clumps               ? clumps_by_compression(recipe, graded, friction, uniform, stop)
+            : growth                      ? by_growth(recipe, graded, friction, uniform, stop)
+                                          : by_compression(recipe, graded, friction, uniform, stop);
 
   rve = steered(rve, recipe, stop);
   Draw result;

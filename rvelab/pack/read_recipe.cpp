@@ -22,7 +22,7 @@ constexpr Range friction{{0, 1e6}, friction_values};
 constexpr Interval stresses{-pressures.high, pressures.high};
 constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
-/// Words of pack.shape: those of Shape, and clump behind them.
+/// Words of pack.shape: those of Shape, and clump and ellipsoid behind them.
 enum class ShapeName {};
 enum class MemberName { disc, sphere };
 
@@ -35,13 +35,19 @@ void read_pack(TableReader& reader, RecipeFile& file) {
   Choices shapes;
   for (int number = 0; number < shape_count; ++number) shapes.emplace_back(name(Shape(number)));
   shapes.emplace_back("clump");
+  shapes.emplace_back("ellipsoid");
   auto shape = ShapeName(recipe.shape);
   auto members = MemberName::sphere;
   reader.choice("shape", shape, shapes,
-                of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D; clump: bodies of discs or spheres, pack.members");
+                of_dimension(2) + ": 2D; " + of_dimension(3) +
+                    ": 3D; clump: bodies of discs or spheres, pack.members; "
+                    "ellipsoid: superellipsoid with exponents of 2, 3D");
   reader.choice("members", members, {"disc", "sphere"}, "shape = clump: what bodies are made of, 2D or 3D");
   recipe.clumps = int(shape) == shape_count;
-  recipe.shape = recipe.clumps ? round_shape(members == MemberName::disc ? 2 : 3) : Shape(shape);
+  file.ellipsoids = int(shape) == shape_count + 1;
+  recipe.shape = recipe.clumps     ? round_shape(members == MemberName::disc ? 2 : 3)
+                 : file.ellipsoids ? Shape::superellipsoid
+                                   : Shape(shape);
   if (!recipe.clumps)
     reader.refuse("members", "contradicts pack.shape = " + as_toml(shapes[std::size_t(shape)]) +
                                  "; allowed: with shape = \"clump\"; remove one");
@@ -50,8 +56,9 @@ void read_pack(TableReader& reader, RecipeFile& file) {
                       "seed of all random numbers; further specimens of --count take the next seeds");
   reader.number("thickness_m", recipe.thickness, "m", {positive, {{1e-7, 10}}}, "2D: thickness of the slab");
   if (dimension_of(recipe.shape) == 3)
-    reader.refuse("thickness_m", std::string("contradicts pack.") + (recipe.clumps ? "members" : "shape") +
-                                     " = \"sphere\"; allowed: in 2D only; remove one");
+    reader.refuse("thickness_m", std::string("contradicts pack.") + (recipe.clumps ? "members" : "shape") + " = " +
+                                     as_toml(recipe.clumps ? "sphere" : shapes[std::size_t(shape)]) +
+                                     "; allowed: in 2D only; remove one");
   reader.choice("cell", recipe.oriented, {"upright", "oriented"},
                 "upright: square or cube; oriented: a lattice that compression along the axes never makes slender "
                 "(Kraynik and Reinelt in 2D, a cubic field in 3D)");
@@ -66,15 +73,54 @@ void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
   reader.number("bedding_angle_deg", fraction.bedding_angle, "degrees", {-180, 180},
                 "not round: mean angle from x to the long axes when the grains are placed");
   reader.number("bedding_spread_deg", fraction.bedding_spread, "degrees", {0, 90},
-                "not round: largest deviation from it, all angles equally frequent; 90: no bedding");
-  if (is_round(shape)) {
-    for (const char* name :
-         {"smallest_aspect_ratio", "largest_aspect_ratio", "bedding_angle_deg", "bedding_spread_deg"})
-      reader.refuse(name, "contradicts pack.shape = " + as_toml(std::string(rvelab::name(shape))) + "; allowed: with " +
-                              names_of_shapes([](Shape each) { return !is_round(each); }, true) + " only; remove one");
-  } else if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio) {
+                "not round: largest deviation from it, all angles equally frequent; 90: no bedding. Of superellipsoids "
+                "from the vertical to z of their shape, directions equally frequent; 90: every orientation");
+  std::vector<const char*> others;
+  if (!keeps_axis(shape)) others = {"smallest_aspect_ratio", "largest_aspect_ratio", "bedding_angle_deg"};
+  if (is_round(shape)) others.push_back("bedding_spread_deg");
+  for (const char* name : others)
+    reader.refuse(name, "contradicts pack.shape = " + as_toml(std::string(rvelab::name(shape))) + "; allowed: with " +
+                            (std::string(name) == "bedding_spread_deg"
+                                 ? names_of_shapes([](Shape each) { return !is_round(each); }, true)
+                                 : names_of_shapes(keeps_axis, true)) +
+                            " only; remove one");
+  if (!others.empty()) return;
+  if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio) {
     reader.mistake("smallest_aspect_ratio", "is above grains.largest_aspect_ratio; allowed: up to it; correct them");
   }
+}
+
+/// Half axes and exponents of superellipsoids; of others none may be given.
+void read_solid(TableReader& reader, GrainFraction& fraction, Shape shape, bool ellipsoids) {
+  const std::vector<double> half = reader.numbers("half_axes", "1", {0, 1e6, true, false},
+                                                  "superellipsoids: half axes along x, y, z of the shape, of which the "
+                                                  "ratios count; radii of the grading are those of the sphere of the "
+                                                  "same volume");
+  const std::vector<double> exponents = reader.numbers(
+      "exponents", "1", {2, largest_exponent},
+      "shape = superellipsoid: e and n of (|x/a|^e + |y/b|^e)^(n/e) + |z/c|^n <= 1; 2 and 2: an ellipsoid");
+  if (!moves_as_body(shape)) {
+    for (const char* name : {"half_axes", "exponents"})
+      reader.refuse(name, "contradicts pack.shape = " + as_toml(std::string(rvelab::name(shape))) +
+                              "; allowed: with shape = \"ellipsoid\" or \"superellipsoid\"; remove one");
+    return;
+  }
+  if (ellipsoids)
+    reader.refuse("exponents", "contradicts pack.shape = \"ellipsoid\"; allowed: with \"superellipsoid\"; remove one");
+  if (half.size() != 3)
+    reader.mistake("half_axes", half.empty() ? "is missing; allowed: three numbers, as [1.25, 1, 0.8]; add it"
+                                             : "is not three numbers; allowed: as [1.25, 1, 0.8]; correct it");
+  if (!ellipsoids && exponents.size() != 2)
+    reader.mistake("exponents", exponents.empty() ? "is missing; allowed: two numbers, as [4, 4]; add it"
+                                                  : "is not two numbers; allowed: as [4, 4]; correct it");
+  if (half.size() != 3 || (!ellipsoids && exponents.size() != 2)) return;
+  fraction.half_axes = {half[0], half[1], half[2]};
+  if (!ellipsoids) {
+    fraction.exponent_xy = exponents[0];
+    fraction.exponent_z = exponents[1];
+  }
+  if (fraction.half_axes.minCoeff() < least_aspect_ratio * fraction.half_axes.maxCoeff())
+    reader.mistake("half_axes", "has a longest more than 10 times the shortest; allowed: up to 10; correct it");
 }
 
 /// Of recipes of clumps: the shape, by name or from a file of members.
@@ -106,7 +152,7 @@ void read_clump(TableReader& reader, GrainFraction& fraction, const Recipe& reci
   }
 }
 
-void read_fraction(TableReader& reader, Recipe& recipe) {
+void read_fraction(TableReader& reader, Recipe& recipe, bool ellipsoids) {
   GrainFraction fraction;
   reader.text("name", fraction.name, "name of a fraction, for --set grains.NAME.key=value");
   std::string material = recipe.materials.front().name;
@@ -123,6 +169,7 @@ void read_fraction(TableReader& reader, Recipe& recipe) {
     }
   }
   read_outlines(reader, fraction, recipe.shape);
+  read_solid(reader, fraction, recipe.shape, ellipsoids);
   read_clump(reader, fraction, recipe);
   Choices known;
   for (const Material& each : recipe.materials) known.push_back(each.name);
@@ -133,7 +180,8 @@ void read_fraction(TableReader& reader, Recipe& recipe) {
   recipe.fractions.push_back(fraction);
 }
 
-void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
+void read_grains(const toml::table& file, Recipe& recipe, bool ellipsoids, toml::table& resolved,
+                 std::vector<KeyError>& errors) {
   const toml::node* node = file.get("grains");
   toml::array list;
   recipe.fractions.clear();
@@ -141,7 +189,7 @@ void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved,
     const std::string where =
         table.contains("name") ? "grains." + table["name"].value_or(std::string("grains")) : "grains";
     TableReader reader(table, "grains", where, line_of(table), errors);
-    read_fraction(reader, recipe);
+    read_fraction(reader, recipe, ellipsoids);
     reader.finish();
     list.push_back(reader.resolved());
   };
@@ -366,7 +414,7 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   };
   read("pack", read_pack);
   read_parameters(file, recipe.recipe, resolved, errors);
-  read_grains(file, recipe.recipe, resolved, errors);
+  read_grains(file, recipe.recipe, recipe.ellipsoids, resolved, errors);
   read("target", read_target);
   read("preparation", read_preparation);
   raise(path, errors);
@@ -395,7 +443,8 @@ std::vector<Key> recipe_keys() {
     all.insert(all.end(), keys.begin(), keys.end());
   };
   document("pack", read_pack);
-  document("grains", [](TableReader& reader, RecipeFile& file) { read_fraction(reader, file.recipe); });
+  document("grains",
+           [](TableReader& reader, RecipeFile& file) { read_fraction(reader, file.recipe, file.ellipsoids); });
   document("target", read_target);
   document("preparation", read_preparation);
   return all;

@@ -42,6 +42,10 @@ void check_recipe(const Recipe& recipe) {
         "one of the two; remove one");
   check_parameters(recipe.contact, recipe.damping, recipe.materials);
   if (recipe.preparation.method == Preparation::Method::regular) check_regular(recipe);
+  if (moves_as_body(recipe.shape) && (recipe.preparation.method != Preparation::Method::compression || !recipe.stress))
+    throw InputError(
+        "pack.shape = \"ellipsoid\" or \"superellipsoid\" with preparation.method = \"growth\" or \"regular\", or "
+        "without a stress; allowed: method = \"compression\" with target.pressure_Pa or target.stress_Pa; change one");
   if (recipe.clumps && (recipe.preparation.method != Preparation::Method::compression || !recipe.stress))
     throw InputError(
         "pack.shape = \"clump\" with preparation.method = \"growth\" or \"regular\", or without a stress; allowed: "

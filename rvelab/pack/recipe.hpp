@@ -22,6 +22,11 @@ struct GrainFraction {
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
   std::optional<Clump> clump = {};  ///< where the recipe is of clumps: the shape of this fraction
+  /// Superellipsoids: half axes along x, y, z of the shape, of which the ratios count, and exponents e (of x and y) and
+  /// n (of both and z). bedding_spread is then the largest angle of the z of the shapes from the vertical, directions
+  /// within equally frequent; 90: every orientation equally likely.
+  Vector3 half_axes = Vector3::Ones();
+  double exponent_xy = 2, exponent_z = 2;
   // Not round:
   double smallest_aspect_ratio = 1, largest_aspect_ratio = 1;  ///< b/a, every value between equally frequent
   double bedding_angle = 0,

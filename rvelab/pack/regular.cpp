@@ -54,7 +54,7 @@ void check_regular(const Recipe& recipe) {
     refuse("grains." + fraction.name + ": " + method +
            " takes grains of one size and form; allowed: one [grains], smallest_radius_m = largest_radius_m and "
            "smallest_aspect_ratio = largest_aspect_ratio; make them equal");
-  if (!is_round(recipe.shape) && fraction.bedding_spread != 0)
+  if (keeps_axis(recipe.shape) && fraction.bedding_spread != 0)
     refuse("grains." + fraction.name + ".bedding_spread_deg = " + in_words(fraction.bedding_spread) + " contradicts " +
            method + ", whose grains lie alike; allowed: 0; set it");
   if (row_counts(recipe.number, fraction.smallest_aspect_ratio).rows == 0) {
@@ -72,7 +72,7 @@ Cell lay_rows(const Recipe& recipe, Grains& grains) {
   Cell cell;
   cell.dimension = 2;
   cell.lattice = Vector3(double(counts.in_row) * apart, double(counts.rows) * height, recipe.thickness).asDiagonal();
-  if (!is_round(recipe.shape)) {
+  if (keeps_axis(recipe.shape)) {
     const auto [c, s] = direction_of(fraction.bedding_angle);
     cell.rotation << c, -s, 0, s, c, 0, 0, 0, 1;
     grains.orientation.assign(grains.size(), Vector3::UnitX());

@@ -107,7 +107,7 @@ Specimen repeated(const Specimen& of, const Image& times) {
                 if (!from.empty()) to.push_back(from[std::size_t(g)]);
               },
               all.grains, one.grains);
-          all.grains.orientation.push_back(one.grains.orientation[g]);
+          if (keeps_axis(one.shape)) all.grains.orientation.push_back(one.grains.orientation[g]);
         }
       }
   const auto turn_contact = [&](Contact& c) {

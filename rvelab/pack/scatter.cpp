@@ -8,6 +8,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/grains/direction.hpp"
 #include "rvelab/specimen/clumps.hpp"
+#include "rvelab/specimen/solids.hpp"
 
 namespace rvelab::pack {
 
@@ -112,6 +113,18 @@ class Boxes {
 
 namespace {
 
+/// Half axes and exponents of the grain that was added last: of the volume of the sphere of its radius.
+void form_solid(const GrainFraction& fraction, Grains& grains) {
+  const Vector3& half = fraction.half_axes;
+  const double scale = grains.radius.back() /
+                       equivalent_radius_of({half[0], half[1], half[2], fraction.exponent_xy, fraction.exponent_z});
+  grains.half_x.push_back(scale * half[0]);
+  grains.half_y.push_back(scale * half[1]);
+  grains.half_z.push_back(scale * half[2]);
+  grains.exponent_xy.push_back(fraction.exponent_xy);
+  grains.exponent_z.push_back(fraction.exponent_z);
+}
+
 /// Lengths and orientation of the grain that was added last.
 template <class By>
 void lay_outline(const GrainFraction& fraction, Uniform& uniform, Grains& grains) {
@@ -142,7 +155,10 @@ Grains graded_grains(const Recipe& recipe) {
       grains.material.push_back(std::int32_t(recipe.fractions[f].material));
       with_shape(recipe.shape, [&](auto is) {
         using By = typename decltype(is)::By;
-        if constexpr (!By::round) lay_outline<By>(recipe.fractions[f], uniform, grains);
+        if constexpr (By::rigid)
+          form_solid(recipe.fractions[f], grains);
+        else if constexpr (!By::round)
+          lay_outline<By>(recipe.fractions[f], uniform, grains);
       });
     }
   }
@@ -196,6 +212,35 @@ void put_clumps(const std::vector<const Clump*>& clumps, const Grains& graded, c
   for (std::size_t k = 0; k < clumps.size(); ++k)
     add_clump(specimen, *clumps[k], graded.radius[k], around.position[k],
               random_turn(dimension_of(specimen.shape), uniform), graded.material[k]);
+}
+
+namespace {
+
+/// z of the body within `spread` degrees of the vertical, directions equally frequent, and turned about it by any
+/// angle.
+Turn bedded_turn(double spread, Uniform& uniform) {
+  const auto half_angle = [](double degrees) { return direction_of(0.5 * degrees); };
+  const double least = direction_of(spread)[0], cosine = least + (1 - least) * uniform();
+  const double c = std::sqrt(0.5 * (1 + cosine)), s = std::sqrt(0.5 * (1 - cosine));
+  const auto [towards_x, towards_y] = direction_of(180 * (2 * uniform() - 1));
+  const auto [about_c, about_s] = half_angle(180 * (2 * uniform() - 1));
+  return normalised(after(Turn{c, {s * towards_x, s * towards_y, 0}}, Turn{about_c, {0, 0, about_s}}));
+}
+
+}  // namespace
+
+void put_solids(const Recipe& recipe, const Grains& graded, Uniform& uniform, Specimen& specimen) {
+  std::vector<NumberCurve> curves;
+  for (const auto& fraction : recipe.fractions) curves.push_back(number_curve(fraction.grading, 3));
+  const auto numbers = numbers_of(recipe, curves);
+  std::size_t g = 0;
+  for (std::size_t f = 0; f < numbers.size(); ++f)
+    for (std::size_t k = 0; k < numbers[f]; ++k, ++g) {
+      const double spread = recipe.fractions[f].bedding_spread;
+      const Turn turn = spread == 90 ? random_turn(3, uniform) : bedded_turn(spread, uniform);
+      add_superellipsoid(specimen, superellipsoid_of(graded, g), graded.position[g],
+                         normalised(after(inverse(turn_of(specimen.cell.rotation)), turn)), graded.material[g]);
+    }
 }
 
 double solid_volume(const Recipe& recipe, const Grains& grains) {

@@ -27,4 +27,7 @@ Cell cell_of(const Recipe& recipe, double volume);
 /// largest are placed first. Cell frame, m. False: no place was found for one of them.
 bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform);
 
+/// Superellipsoids for graded grains, which have their sizes and places: bodies, turned as the recipe says.
+void put_solids(const Recipe& recipe, const Grains& graded, Uniform& uniform, Specimen& specimen);
+
 }  // namespace rvelab::pack

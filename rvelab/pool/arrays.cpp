@@ -133,8 +133,8 @@ void add_grains(std::vector<Array>& to) {
     const auto add_lengths = [&]<class By>(std::type_identity<By>, Shape shape) {
       if constexpr (!By::round) {
         for (const auto& length : By::template columns<One>) {
-          to.push_back(of_grains(names.emplace_back(std::string("grains/") + length.dataset).c_str(), "m",
-                                 "length of its shape",
+          to.push_back(of_grains(names.emplace_back(std::string("grains/") + length.dataset).c_str(), length.unit,
+                                 length.unit[0] == 'm' ? "length of its shape" : "exponent of its shape",
                                  [entries = length.entries](const Read&, const GrainState& grain) {
                                    return static_cast<const typename By::Own&>(grain).*entries;
                                  }));
@@ -149,14 +149,23 @@ void add_grains(std::vector<Array>& to) {
   to.push_back(of_grains("grains/moment_of_inertia_kg_m2", "kg m^2", "about its centre",
                          [](const Read&, const GrainState& grain) { return grain.inertia; }));
   to.push_back(column(
-      "grains/inertia_tensor_kg_m2", "kg m^2", "of clumps: about its centre; not there of other grains",
-      RVELAB_OF_GRAINS, [](const Read& state) { return state.network.moments.size(); },
+      "grains/inertia_tensor_kg_m2", "kg m^2",
+      "of bodies (clumps, superellipsoids): about its centre; not there of other grains", RVELAB_OF_GRAINS,
+      [](const Read& state) { return state.network.moments.size(); },
       [](const Read& state, std::size_t k) -> Matrix3 {
         const Matrix3& turn = state.network.cell.rotation;
         return turn * state.network.moments[k] * turn.transpose();
       }));
   to.back().rows = [](const Rve& rve) {
     const std::size_t bodies = rve.network().moments.size();
+    return bodies > 0 ? bodies : std::size_t(-1);  // -1: not there
+  };
+  to.push_back(column(
+      "grains/axes", "1", "of bodies (clumps, superellipsoids): their axes as columns; not there of other grains",
+      RVELAB_OF_GRAINS, [](const Read& state) { return state.network.axes.size(); },
+      [](const Read& state, std::size_t k) -> Matrix3 { return state.network.cell.rotation * state.network.axes[k]; }));
+  to.back().rows = [](const Rve& rve) {
+    const std::size_t bodies = rve.network().axes.size();
     return bodies > 0 ? bodies : std::size_t(-1);  // -1: not there
   };
   to.push_back(of_grains("grains/position_m", "m", "of its centre; its images stand lattice columns apart",

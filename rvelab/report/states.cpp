@@ -87,7 +87,7 @@ void pack_grains(const State& state, Packed& packed) {
   const Matrix3 inverse = network.cell.lattice.inverse();
   for (int k = 0; k < network.dimension(); ++k)
     for (const GrainState& grain : network.grains) packed.add_part(inverse.row(k).dot(grain.position) + 0.5);
-  if (!is_round(network.shape))
+  if (keeps_axis(network.shape))
     for (const GrainState& grain : network.grains)
       packed.add_part(angle_of(network.cell.rotation * grain.orientation) / pi);
 }
@@ -119,7 +119,7 @@ void pack_contacts(const State& state, double largest_force, Packed& packed) {
     const double part = limit > 0 ? std::min(1.0, contact.tangential_force.norm() / limit) : 0;
     packed.add(std::uint8_t(std::lround(255 * part)));
   });
-  if (!is_round(network.shape))
+  if (keeps_axis(network.shape))
     each([&](const ContactState& contact) {
       packed.add_part(angle_of(network.cell.rotation * contact.normal) / (2 * pi));
     });
@@ -133,7 +133,7 @@ Packed sizes_of(const State& state) {
   };
   with_shape(state.network.shape, [&](auto is) {
     using By = typename decltype(is)::By;
-    if constexpr (By::round)
+    if constexpr (By::round || By::rigid)
       add(state.specimen.grains.radius);
     else
       each_column_of<By>([&](const auto&, const std::vector<double>& column) { add(column); }, state.specimen.grains);
@@ -191,7 +191,8 @@ Json states_of(const Test& test, const ChosenStates& chosen) {
   }
   Json json;
   json["grains"] = states.front().network.grains.size();
-  json["shape"] = name(states.front().network.shape);
+  const Shape shape = states.front().network.shape;
+  json["shape"] = name(moves_as_body(shape) ? round_shape(3) : shape);  // as the page shows bodies
   json["sizes"] = sizes_of(states.front()).text();
   json["largest_force_N"] = number(largest_force);
   std::vector<std::pair<double, double>> ranges;

@@ -17,7 +17,7 @@ using fields::Listed;
 using fields::Path;
 using fields::Textual;
 
-constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '4'};
+constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '5'};
 
 /// Bytes of one value; of a text, those of its length at least.
 template <class Value>

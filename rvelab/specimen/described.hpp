@@ -21,7 +21,8 @@
 namespace rvelab::fields {
 
 /// Entries of a field: one value, or a list with one for each grain. In a table each column has one for each row.
-enum class Rows { one, per_grain, per_grain_or_none };
+/// `per_grain_or_left_out`: a file has no dataset where there are none.
+enum class Rows { one, per_grain, per_grain_or_none, per_grain_or_left_out };
 
 /// Where the vectors of a field lie in 2D: anywhere, in the plane (z = 0), along its normal (x = y = 0), or as the one
 /// component along the tangent of a contact (y = z = 0).

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "rvelab/error.hpp"
+#include "rvelab/specimen/solids.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab {
@@ -209,7 +210,7 @@ class Relations {
                 expect_rows<By>((std::string("grains/") + described.dataset).c_str(), column.size(), own ? n : 0);
               },
               s.grains);
-          expect_rows<By>("grains/orientation", s.grains.orientation.size(), is_round(s.shape) ? 0 : n);
+          expect_rows<By>("grains/orientation", s.grains.orientation.size(), keeps_axis(s.shape) ? n : 0);
           for (std::size_t k = 0; own && k < n; ++k) check_outline<By>(k);
         }
       });
@@ -245,6 +246,7 @@ class Relations {
     if (!(std::abs(g.radius[k] - By::radius(own)) <= 1e-9 * g.radius[k]))
       refuse(of_grain("grains/radius_m", k) + " = " + in_words(g.radius[k]) + "; that of its " + By::name + " is " +
              By::radius_in_words + ", " + in_words(By::radius(own)) + " m here");
+    if constexpr (By::rigid) return;
     const double length = g.orientation[k].norm();
     if (!(std::abs(length - 1) <= 1e-9))
       refuse(of_grain("grains/orientation", k) + " has the length " + digits_of(length) +
@@ -257,11 +259,16 @@ class Relations {
     if (s.members.size() != (s.bodies.empty() ? 0 : n))
       refuse("members has " + std::to_string(s.members.size()) +
              " rows; allowed: one for each grain where there are bodies, else none");
+    if (moves_as_body(s.shape) && s.bodies.size() != n)
+      refuse("bodies has " + std::to_string(s.bodies.size()) + " rows; allowed: " + std::to_string(n) +
+             ", one for each grain where shape is " + name(s.shape));
     if (s.bodies.empty()) return;
-    if (!is_round(s.shape)) refuse(std::string("bodies of ") + name(s.shape) + "s; allowed: of discs or spheres");
+    if (keeps_axis(s.shape))
+      refuse(std::string("bodies of ") + name(s.shape) + "s; allowed: of discs, spheres or superellipsoids");
     if (has_any(s))
       advise(
-          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps yet; take "
+          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps or "
+          "superellipsoids yet; take "
           "grains that move by themselves, or leave the interactions out");
     if (s.contact.slip != Slip::consistent)
       refuse(std::string("contact/slip = \"") + name(s.contact.slip) + "\" with bodies; allowed: \"consistent\"");
@@ -282,7 +289,21 @@ class Relations {
                "; allowed: a quaternion of length 1, scalar first, in 2D about z");
       const std::size_t last = b + 1 < s.bodies.size() ? std::size_t(s.bodies[b + 1].first) : n;
       for (std::size_t g = first; g < std::min(last, n); ++g) check_member(body, first, g);
+      if (moves_as_body(s.shape)) check_solid(b);
     }
+  }
+  /// A body of one grain has the volume and the inertia of that.
+  void check_solid(std::size_t b) const {
+    const Body& body = s.bodies[b];
+    const Body right = body_of_solid(s.grains, b);
+    if (!s.members[b].offset.isZero(0))
+      refuse(at("members/offset_m", b) + " is not 0; allowed: 0 where shape is " + name(s.shape));
+    if (!(std::abs(body.volume - right.volume) <= 1e-9 * right.volume))
+      refuse(at("bodies/volume_m3", b) + " = " + in_words(body.volume) + "; that of its grain is " +
+             in_words(right.volume) + " m^3");
+    if (!((body.gyration - right.gyration).norm() <= 1e-9 * right.gyration.norm()))
+      refuse(at("bodies/gyration_m2", b) + " is not that of its grain, " + in_words(right.gyration[0]) + " " +
+             in_words(right.gyration[1]) + " " + in_words(right.gyration[2]) + " m^2");
   }
   void check_member(const Body& body, std::size_t first, std::size_t g) const {
     if (s.grains.material[g] != s.grains.material[first])
@@ -505,7 +526,8 @@ void Relations::check_history(std::size_t k) const {
   if (!c.tangential_force.isZero(0) && !(parameters.kt > 0))
     advise(pair(k) + " holds a tangential force of " + in_words(c.tangential_force.stableNorm()) +
            " N, but its tangential stiffness is 0; give a stiffness > 0, or clear the tangential forces");
-  if (s.cell.dimension == 2) return;
+  // Of other shapes the normal is not along the branch, and a step takes what is tangential alone.
+  if (s.cell.dimension == 2 || !is_round(s.shape)) return;
   const Vector3 &xi = s.grains.position[std::size_t(c.i)], &xj = s.grains.position[std::size_t(c.j)];
   const Vector3 shift = translation(s.cell, c.image), branch = xj + shift - xi;
   const double length = branch.stableNorm();

@@ -76,51 +76,88 @@ struct EllipsoidPair {
   Triple<V> branch;
 };
 
-/// `search`: the contact of one lane by superellipsoids.
-template <class V, class Search>
-inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const EllipsoidPair<V>& pair, const Search& search) {
-  const EllipsoidMatrix<V>&mi = pair.i, &mj = pair.j;
-  const EllipsoidMatrix<V> sum = {mi.xx + mj.xx, mi.yy + mj.yy, mi.zz + mj.zz,          mi.yz + mj.yz,
-                                  mi.xz + mj.xz, mi.xy + mj.xy, mi.rolling + mj.rolling};
-  const V most = 0.9 * sum.rolling;
-  Triple<V> n = of_length_1(along_inverse(sum, pair.branch)), first, second, turn;
+/// Where to begin: the normal of the ellipsoid of M_i + M_j where the branch leaves it.
+template <class V>
+inline __attribute__((always_inline)) Triple<V> first_direction(const EllipsoidPair<V>& pair) {
+  const EllipsoidMatrix<V>&i = pair.i, &j = pair.j;
+  const EllipsoidMatrix<V> sum = {i.xx + j.xx, i.yy + j.yy, i.zz + j.zz, i.yz + j.yz,
+                                  i.xz + j.xz, i.xy + j.xy, i.rolling};
+  return of_length_1(along_inverse(sum, pair.branch));
+}
+
+/// f along a direction and Newton's step from there.
+template <class V>
+struct EllipsoidStep {
   EllipsoidAt<V> i, j;
-  V overlap, gain;
-  auto done = most < 0.0, apart = done;
+  V overlap, gain, square;         ///< f; twice what it falls by the step; the turn, squared
+  Triple<V> turn, move_i, move_j;  ///< of n, and of the points along their surfaces
+  RadiiOfCurvature<V> radii_i, radii_j;
+};
+template <class V>
+inline __attribute__((always_inline)) EllipsoidStep<V> ellipsoid_step(const EllipsoidPair<V>& pair,
+                                                                      const Triple<V>& n) {
+  const EllipsoidMatrix<V>&mi = pair.i, &mj = pair.j;
+  const V most = 0.9 * (mi.rolling + mj.rolling);
+  EllipsoidStep<V> step;
+  step.i = ellipsoid_at(mi, n);
+  step.j = ellipsoid_at(mj, n);
+  step.overlap = (step.i.height + step.j.height) - dot(n, pair.branch);
+  Triple<V> first, second;
+  across(n, first, second);
+  const Triple<V> slope = plus(plus(pair.branch, V{} - 1.0, step.i.point), V{} - 1.0, step.j.point);
+  const V F1 = dot(slope, first), F2 = dot(slope, second), shift = (step.overlap < most) ? step.overlap : most;
+  const Triple<V> i1 = bent(mi, step.i, first), i2 = bent(mi, step.i, second), j1 = bent(mj, step.j, first),
+                  j2 = bent(mj, step.j, second);
+  const V a11 = dot(first, i1), a12 = dot(first, i2), a22 = dot(second, i2);
+  const V b11 = dot(first, j1), b12 = dot(first, j2), b22 = dot(second, j2);
+  const V c11 = (a11 + b11) - shift, c12 = a12 + b12, c22 = (a22 + b22) - shift;
+  const V inverse = 1.0 / (c11 * c22 - c12 * c12);
+  const V y1 = (c22 * F1 - c12 * F2) * inverse, y2 = (c11 * F2 - c12 * F1) * inverse;
+  step.square = y1 * y1 + y2 * y2;
+  step.turn = plus(times(y1, first), y2, second);
+  step.gain = y1 * F1 + y2 * F2;
+  step.move_i = plus(times(y1, i1), y2, i2);
+  step.move_j = plus(times(y1, j1), y2, j2);
+  step.radii_i = {a11 + a22, a11 * a22 - a12 * a12};
+  step.radii_j = {b11 + b22, b11 * b22 - b12 * b12};
+  return step;
+}
+template <class V>
+inline __attribute__((always_inline)) auto is_apart(const EllipsoidStep<V>& step) {
+  return step.overlap < -1e-12 * (step.i.height + step.j.height);
+}
+/// Whether a pair is apart, or the step leads to the least: f to the third power of it.
+template <class V>
+inline __attribute__((always_inline)) auto is_done(const EllipsoidStep<V>& step) {
+  return is_apart(step) | (step.square <= 2.5e-9);
+}
+
+/// What a contact is from where the last step leads to it. `search`: the contact of one lane by superellipsoids.
+template <class V, class Search>
+inline __attribute__((always_inline)) ContactsOf<V> contacts_by(const EllipsoidPair<V>& pair, const Triple<V>& n,
+                                                                const EllipsoidStep<V>& step, const Search& search) {
+  const auto apart = is_apart(step);
   ContactsOf<V> contacts;
-  for (int k = 0; k <= superellipsoid_steps; ++k) {
-    i = ellipsoid_at(mi, n);
-    j = ellipsoid_at(mj, n);
-    overlap = (i.height + j.height) - dot(n, pair.branch);
-    across(n, first, second);
-    const Triple<V> slope = plus(plus(pair.branch, V{} - 1.0, i.point), V{} - 1.0, j.point);
-    const V F1 = dot(slope, first), F2 = dot(slope, second), shift = (overlap < most) ? overlap : most;
-    const Triple<V> i1 = bent(mi, i, first), i2 = bent(mi, i, second), j1 = bent(mj, j, first),
-                    j2 = bent(mj, j, second);
-    const V a11 = dot(first, i1), a12 = dot(first, i2), a22 = dot(second, i2);
-    const V b11 = dot(first, j1), b12 = dot(first, j2), b22 = dot(second, j2);
-    const V c11 = (a11 + b11) - shift, c12 = a12 + b12, c22 = (a22 + b22) - shift;
-    const V inverse = 1.0 / (c11 * c22 - c12 * c12);
-    const V y1 = (c22 * F1 - c12 * F2) * inverse, y2 = (c11 * F2 - c12 * F1) * inverse, square = y1 * y1 + y2 * y2;
-    turn = plus(times(y1, first), y2, second);
-    gain = y1 * F1 + y2 * F2;
-    apart = overlap < -1e-12 * (i.height + j.height);
-    done = done | apart | (square <= 2.5e-9);
-    if (k == superellipsoid_steps || !any_of(!done)) {
-      contacts.radii_i = {a11 + a22, a11 * a22 - a12 * a12};
-      contacts.radii_j = {b11 + b22, b11 * b22 - b12 * b12};
-      const Triple<V> move_i = plus(times(y1, i1), y2, i2), move_j = plus(times(y1, j1), y2, j2);
-      const Triple<V> both = plus(plus(i.point, V{} - 1.0, j.point), V{} + 1.0, pair.branch);
-      contacts.point = times(V{} + 0.5, plus(plus(both, V{} + 1.0, move_i), V{} - 1.0, move_j));
-      break;
-    }
-    n = chosen(done, n, turned_by(n, turn));
-  }
-  contacts.overlap = overlap - (apart ? V{} : 0.5 * gain);
-  contacts.n = turned_by(n, turn);
-  const auto left = !(apart | (done & (overlap <= sum.rolling)));
+  const Triple<V> both = plus(plus(step.i.point, V{} - 1.0, step.j.point), V{} + 1.0, pair.branch);
+  contacts.overlap = step.overlap - (apart ? V{} : 0.5 * step.gain);
+  contacts.n = turned_by(n, step.turn);
+  contacts.point = times(V{} + 0.5, plus(plus(both, V{} + 1.0, step.move_i), V{} - 1.0, step.move_j));
+  contacts.radii_i = step.radii_i;
+  contacts.radii_j = step.radii_j;
+  const auto left = !(apart | (is_done(step) & (step.overlap <= pair.i.rolling + pair.j.rolling)));
   if (any_of(left)) ask_search(left, contacts, search);
   return contacts;
+}
+
+template <class V, class Search>
+inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const EllipsoidPair<V>& pair, const Search& search) {
+  Triple<V> n = first_direction(pair);
+  EllipsoidStep<V> step = ellipsoid_step(pair, n);
+  for (int k = 0; k < superellipsoid_steps && any_of(!is_done(step)); ++k) {
+    n = chosen(is_done(step), n, turned_by(n, step.turn));
+    step = ellipsoid_step(pair, n);
+  }
+  return contacts_by(pair, n, step, search);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_CASE("a snapshot of another layout, cut short or damaged is refused in one 
 
   SnapshotHead head = head_of(good);
   head.magic[7] = '3';
-  CHECK_THAT(message(with_head(good, head)), Contains("\"rvesnap4\"") && Contains("specimen file"));
+  CHECK_THAT(message(with_head(good, head)), Contains("\"rvesnap5\"") && Contains("specimen file"));
   head = head_of(good);
   head.layout ^= 1;
   CHECK_THAT(message(with_head(good, head)), Contains("layout") && Contains("that of this build"));

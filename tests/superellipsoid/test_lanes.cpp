@@ -1,8 +1,5 @@
 // Many pairs at a time: the bits of one pair alone, whatever the width and wherever a search begins; ellipsoids by
-// their own formulas; forces and moments from rows.
-#include <Eigen/Geometry>
-
-#include "rvelab/solver/kernels/superellipsoids.hpp"
+// their own formulas; forces and moments.
 #include "rvelab/superellipsoid/ellipsoids.hpp"
 #include "tests/catch.hpp"
 #include "tests/superellipsoid/random_pairs.hpp"
@@ -70,25 +67,27 @@ struct Hertz {
   }
 };
 
-std::array<double, 4> quaternion(const Axes& r) {
-  Eigen::Matrix3d turn;
-  turn << r.x.x, r.y.x, r.z.x, r.x.y, r.y.y, r.z.y, r.x.z, r.y.z, r.z.z;
-  const Eigen::Quaterniond q(turn);
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
+/// Force on j of the overlap along n at the contact point, and the moments on both.
+struct NormalForces {
+  double overlap;
+  Vector force, moment_i, moment_j;
+};
 struct TwoGrains {
-  double rows[2 * superellipsoid_row] = {};
-  void set(int grain, const Superellipsoid& s, const Vector& x, const std::array<double, 4>& q) {
-    const SuperellipsoidForm<double> f = form_of(s);
-    const double row[superellipsoid_row] = {x.x, x.y, x.z, f.rolling,  q[0],      q[1],      q[2],     q[3],
-                                            s.a, s.b, s.c, f.share_xy, f.share_z, f.root_xy, f.root_z, 0};
-    std::copy_n(row, superellipsoid_row, rows + grain * superellipsoid_row);
+  Superellipsoid shape[2];
+  Vector at[2];
+  Axes axes[2];
+  void set(int grain, const Superellipsoid& s, const Vector& x, const Axes& turned) {
+    shape[grain] = s;
+    at[grain] = x;
+    axes[grain] = turned;
   }
-  NormalForces<double> forces() const {
-    const std::int32_t i = 0, j = 1;
+  NormalForces forces() const {
+    const OverlapPair pair = {form_of(shape[0]), form_of(shape[1]), axes[0], axes[1], difference(at[1], at[0])};
     Triple<double> guess = {0, 0, 0};
-    return normal_forces<1>(rows, &i, &j, Triple<double>{0, 0, 0}, guess, Hertz{});
+    const ContactsOf<double> contact = contacts_of(pair, guess);
+    const Vector force = times(Hertz{}(std::max(0.0, contact.overlap)), contact.n),
+                 arm_j = difference(contact.point, pair.branch);
+    return {contact.overlap, force, cross(force, contact.point), cross(arm_j, force)};
   }
 };
 
@@ -170,20 +169,20 @@ TEST_CASE("forces and moments of two grains balance, and the work around any loo
     const KnownPair known = known_pair(draw, si, sj, 0, 0.2);
     const Axes axes_i = known.pair.axes_i, axes_j = known.pair.axes_j;
     TwoGrains grains;
-    grains.set(0, si, {0.3, -0.2, 0.1}, quaternion(axes_i));
+    grains.set(0, si, {0.3, -0.2, 0.1}, axes_i);
     // Around a circle of shifts while the second grain turns about an axis and back.
     const Vector u = of_length_1(cross(known.n, draw.direction())), about = draw.direction();
     const double reach = 0.2 * known.depth;
     constexpr int steps = 400;
     double work = 0, most = 0;
     Vector x_last{}, turn_last{};
-    NormalForces<double> last{};
+    NormalForces last{};
     for (int t = 0; t <= steps; ++t) {
       const double angle = 2 * std::numbers::pi * t / steps, turn = reach * std::sin(angle);
       const Vector x =
           plus(plus(known.pair.branch, reach * std::cos(angle), u), 0.5 * reach * std::sin(angle), known.n);
-      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), quaternion(rotated(rotation(about, turn), axes_j)));
-      const NormalForces<double> now = grains.forces();
+      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), rotated(rotation(about, turn), axes_j));
+      const NormalForces now = grains.forces();
       REQUIRE(now.overlap > 0);
       const Vector arm = cross(x, now.force);  // moments about the centre of the first
       CHECK(length_of(plus(plus(now.moment_i, 1.0, now.moment_j), 1.0, arm)) < 1e-13 * length_of(now.force));
@@ -207,7 +206,7 @@ TEST_CASE("forces and moments of two grains balance, and the work around any loo
     for (int t = 0; t <= parts; ++t) {
       const double in = known.depth * t / parts;
       const Vector x = plus(known.pair.branch, known.depth - in, known.n);
-      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), quaternion(axes_j));
+      grains.set(1, sj, plus(x, 1.0, {0.3, -0.2, 0.1}), axes_j);
       const double now = dot(grains.forces().force, known.n);
       if (t > 0) pressed += 0.5 * (now + before) * known.depth / parts;
       before = now;

@@ -47,19 +47,23 @@ void expect_names(const Specimen& specimen) {
 }
 
 /// What says how large a grain is: its radius; of one that is not round the lengths of its shape (m) and the angle of
-/// the long axis, degrees, laboratory frame.
+/// the long axis, degrees, in space the quaternion of its axes, scalar first, laboratory frame.
 template <class By>
 std::string size_names() {
   if constexpr (By::round) return ",r";
   std::string names;
   each_column_of<By>([&](const auto& described) { names += "," + std::string(described.csv); });
-  return names + ",angle";
+  return names + (By::rigid ? ",q0,q1,q2,q3" : ",angle");
 }
 template <class By>
 std::string size_of(const Specimen& specimen, std::size_t g) {
   if constexpr (By::round) return "," + exact(specimen.grains.radius[g]);
   std::string text;
   each_column_of<By>([&](const auto&, const auto& column) { text += "," + exact(column[g]); }, specimen.grains);
+  if constexpr (By::rigid) {
+    const Turn q = after(turn_of(specimen.cell.rotation), specimen.bodies[g].orientation);
+    return text + "," + exact(q.w) + "," + exact(q.v[0]) + "," + exact(q.v[1]) + "," + exact(q.v[2]);
+  }
   const Vector3 axis = specimen.cell.rotation * specimen.grains.orientation[g];
   return text + "," + exact(std::atan2(axis[1], axis[0]) * (180 / 3.14159265358979323846));
 }

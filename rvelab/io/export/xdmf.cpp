@@ -76,6 +76,22 @@ class Series {
     for (int k = 0; k < 3; ++k) values.push_back(vector[k]);
   }
 
+  /// Of superellipsoids the quaternion of their axes, scalar first, and R diag(half axes) R^T, from which ParaView's
+  /// filter Tensor Glyph draws ellipsoids as they are; both in the laboratory frame.
+  void add_solids(const ExportState& state) {
+    std::vector<double> quaternion, tensor;
+    for (std::size_t g = 0; g < state.specimen.grains.size(); ++g) {
+      const Turn q = after(turn_of(state.network.cell.rotation), state.specimen.bodies[g].orientation);
+      quaternion.insert(quaternion.end(), {q.w, q.v[0], q.v[1], q.v[2]});
+      const OwnValues own = own_of<SuperellipsoidGrain>(state.specimen.grains, g);
+      const Matrix3 axes = axes_of(q);
+      const Matrix3 half = axes * Vector3(own.half_x, own.half_y, own.half_z).asDiagonal() * axes.transpose();
+      for (int k = 0; k < 9; ++k) tensor.push_back(half(k / 3, k % 3));
+    }
+    attribute("grains", "quaternion", "Node", quaternion, 4, "1");
+    attribute("grains", "half_axes_m", "Node", tensor, 9, "m");
+  }
+
   /// Of grains that are not round: the long axis, laboratory frame, and the lengths of the shape.
   template <class By>
   void add_outlines(const ExportState& state) {
@@ -85,9 +101,10 @@ class Series {
     attribute("grains", "orientation", "Node", orientation, 3, "1");
     each_column_of<By>(
         [&](const auto& described, const std::vector<double>& column) {
-          attribute("grains", described.dataset, "Node", column, 1, "m");
+          attribute("grains", described.dataset, "Node", column, 1, described.unit);
         },
         state.specimen.grains);
+    if constexpr (By::rigid) add_solids(state);
   }
 
   void add_grains(const ExportState& state) {

@@ -33,6 +33,8 @@ struct Described {
 
   template <class Value, class Owner, class Member>
   void field(const fields::Path& path, Value& value, const Field<Owner, Member>& field) {
+    if constexpr (fields::Listed<std::remove_const_t<Value>>::is_list)
+      if (field.rows == fields::Rows::per_grain_or_left_out && archive.leaves_out(path.text(), value)) return;
     archive.field(path.text(), value, field.units);
   }
   template <class Items, class... Columns>
@@ -55,6 +57,10 @@ class Writer {
   void field(const std::string& name, const std::vector<Value>& values, const std::string& units) {
     rows<Value>(
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
+  }
+  template <class Value>
+  bool leaves_out(const std::string&, const std::vector<Value>& values) const {
+    return values.empty();
   }
   template <class Item, class... Columns>
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
@@ -114,6 +120,11 @@ class Reader {
     expect_shape<Value>(name, {size});
     values.resize(size);
     rows<Value>(name, values.size(), [&](std::size_t k) -> Value& { return values[k]; });
+  }
+  template <class Value>
+  bool leaves_out(const std::string& name, std::vector<Value>& values) const {
+    values.clear();
+    return !file_.has(group_ + "/" + name);
   }
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
@@ -199,6 +210,10 @@ class Digest {
   void field(const std::string&, const std::vector<Value>& values, const std::string&) {
     add(std::uint64_t(values.size()));
     for (const Value& value : values) add(value);
+  }
+  template <class Value>
+  bool leaves_out(const std::string&, const std::vector<Value>& values) const {
+    return values.empty();
   }
   template <class Item, class... Columns>
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {

@@ -62,10 +62,10 @@ std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Speci
 /// Material of each row: by name or number where the file has the column, else the only one.
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
   if (table.has("body"))
-    throw InputError(
-        table.location(0) +
-        ": the column `body` is of clumps, which tables cannot bring back: their members would move apart; "
-        "allowed: a table of grains that move by themselves; keep clumps in HDF5 files");
+    throw InputError(table.location(0) +
+                     ": the column `body` is of clumps or superellipsoids, which tables cannot bring back: bodies have "
+                     "a motion of their own; "
+                     "allowed: a table of grains that move by themselves; keep these in HDF5 files");
   std::vector<std::int32_t> index(table.rows(), 0);
   if (!table.has("material")) {
     const bool several = specimen.materials.size() > 1;
@@ -160,6 +160,10 @@ void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
 /// Takes one grain's lengths (m) and the angle of the long axis (degrees, laboratory frame) from its row.
 template <class By>
 void read_outline(const CsvTable& table, std::size_t row, Specimen& specimen) {
+  if constexpr (By::rigid)
+    throw InputError(table.location(row) + ": " + By::name +
+                     "s are not read from tables, whose contacts would be another state; allowed: HDF5 files; keep the "
+                     "specimen in one");
   Grains& grains = specimen.grains;
   typename By::Own own;
   std::size_t last = 0;

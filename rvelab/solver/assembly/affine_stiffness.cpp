@@ -114,7 +114,7 @@ Matrix6 sum_over_bodies(const Model& model, const Assembly& assembly, const Of& 
   Matrix6 sum = Matrix6::Zero();
   each_touching<shape>(model, assembly, [&](std::size_t p, const auto& at) {
     const auto [kn, kt] = coefficients(p, at);
-    const Vector3 n = Vector3(at.branch.x, at.branch.y, at.branch.z) / at.length;
+    const Vector3 n = Vector3(at.along().x, at.along().y, at.along().z) / at.along_length();
     const Vector3 b = Vector3(at.branch.x, at.branch.y, at.branch.z) +
                       assembly.bodies.arm[std::size_t(assembly.pairs.i[p])] -
                       assembly.bodies.arm[std::size_t(assembly.pairs.j[p])];
@@ -132,11 +132,13 @@ Matrix6 sum_over_bodies(const Model& model, const Assembly& assembly, const Of& 
 template <class Of>
 Matrix6 affine_sum(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   const Matrix6 stiffness = with_shape(model.shape, [&](auto shape) -> Matrix6 {
-    if (model.bodies) return sum_over_bodies<shape.value>(model, assembly, coefficients);
+    if (moves_as_body(shape.value) || model.bodies) return sum_over_bodies<shape.value>(model, assembly, coefficients);
     if constexpr (is_round(shape.value))
       return sum_over_round<shape.value>(model, assembly, coefficients, interactions);
-    else
+    else if constexpr (keeps_axis(shape.value))
       return sum_over_outlines<shape.value>(model, assembly, coefficients);
+    else
+      return {};  // of bodies
   });
   const Matrix6 turn = strain_turn(assembly.cell.rotation);
   return turn.transpose() * stiffness * turn / assembly.cell.volume();

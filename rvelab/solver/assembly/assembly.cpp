@@ -8,6 +8,7 @@
 #include "rvelab/solver/assembly/listing.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/outline.hpp"
+#include "rvelab/solver/assembly/superellipsoid_rows.hpp"
 #include "rvelab/specimen/specimen_check.hpp"
 
 namespace rvelab {
@@ -45,20 +46,23 @@ Vector3 Assembly::orientation(const Model& model, std::size_t g) const {
 void complete_row(const Model& model, std::size_t g, double* row) {
   with_shape(model.shape, [&](auto is) {
     using By = typename decltype(is)::By;
-    if constexpr (By::round)
+    if constexpr (By::round) {
       By::complete_row(model.radius[g], row);
-    else
+    } else if constexpr (By::rigid) {
+      const double* form = model.form.data() + 9 * g;
+      row[3] = form[0];
+      row[7] = row[11] = 0;
+      std::copy_n(form + 1, 8, row + 16);
+    } else {
       Outline<decltype(is)::value>::complete_row(own_of<By>(model.own, g), row);
+    }
   });
 }
 
 namespace {
 
-/// The lengths of grains that are not round, and what the grain loop makes of them.
 template <class By>
-void take_lengths(const Grains& grains, Model& model) {
-  each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, model.own, grains);
-  model.outer_radius = reach_of(model.shape, grains);
+void take_turn_values(const Grains& grains, Model& model) {
   std::vector<double> first(padded_to_lanes(grains.size()), 0.0), second = first;
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const TurnValues values = By::turn_values(own_of<By>(grains, g));
@@ -67,6 +71,18 @@ void take_lengths(const Grains& grains, Model& model) {
   }
   model.turn_first = std::move(first);
   model.turn_second = std::move(second);
+}
+
+/// The lengths of grains that are not round, and what the grain loop makes of them.
+template <class By>
+void take_lengths(const Grains& grains, Model& model) {
+  each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, model.own, grains);
+  model.outer_radius = reach_of(model.shape, grains);
+  if constexpr (By::rigid) {
+    model.form = forms_of(grains);
+  } else {
+    take_turn_values<By>(grains, model);
+  }
 }
 
 /// The scaled masses that a specimen brings; the arrays of the state are empty while it is open.
@@ -104,7 +120,7 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.thickness = s.cell.lattice(2, 2);
   const auto kernels_with = [&](bool dashpot) {
     return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
-                        model.contact.hertz_radius, model.dimension() == 3 && has_any(s)});
+                        model.contact.hertz_radius, model.dimension() == 3 && has_any(s), all_ellipsoids(s.grains)});
   };
   model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
   model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);
@@ -127,11 +143,12 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   for (std::size_t g = 0; g < n; ++g) {
     double* row = assembly.rows.data() + g * model.row_length();
     for (int k = 0; k < model.dimension(); ++k) row[k] = s.grains.position[g][k];
-    if (!model.round()) {
+    if (keeps_axis(model.shape)) {
       row[5] = s.grains.orientation[g][0];
       row[6] = s.grains.orientation[g][1];
     }
     complete_row(model, g, row);
+    if (moves_as_body(model.shape)) put_orientation(assembly.bodies.motion[g].orientation, row);
     assembly.set_velocity(model, g, s.grains.velocity[g], s.grains.spin[g]);
   }
   set_physical_masses(model);
@@ -166,7 +183,8 @@ Specimen close_assembly(const Model& model, const Assembly& assembly) {
   }
   if (!model.round()) {
     each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, s.grains, model.own);
-    for (std::size_t g = 0; g < model.size(); ++g) s.grains.orientation.push_back(assembly.orientation(model, g));
+    if (keeps_axis(model.shape))
+      for (std::size_t g = 0; g < model.size(); ++g) s.grains.orientation.push_back(assembly.orientation(model, g));
   }
   if (assembly.state.masses.in_use) {
     const bool released = assembly.mass.empty();
@@ -207,6 +225,7 @@ PairArrays arrays_of(PairTable& t) {
   p.radius_i = t.radius_i.data();
   p.radius_j = t.radius_j.data();
   p.force = t.force.data();
+  p.solid = t.solid.data();
   return p;
 }
 

@@ -32,6 +32,8 @@ struct Model {
   OwnColumns<SharedArray> own;                  ///< of the shape
   SharedArray<double> outer_radius;             ///< not round: of the circles around the grains, m
   SharedArray<double> turn_first, turn_second;  ///< not round: TurnValues for the grain loop, padded to lanes
+  /// Superellipsoids: what does not change in their rows, nine each (columns 3 and 16 to 23).
+  SharedArray<double> form;
   double mean_radius = 0;                       ///< m; of bodies where there are some
   double largest_reach = 0;                     ///< m, of the circles around the grains
   double largest_skin = 0;                      ///< m
@@ -119,6 +121,7 @@ struct PairTable {
   Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< where the kernels read them by pairs
+  Buffer solid;  ///< superellipsoids (kernels/configuration.hpp): directions to begin with, no state, and torques
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
   /// `slots` as the grain loop reads them: those of pairs beyond `near` point to a padding pair until one of their
@@ -168,7 +171,7 @@ struct Assembly {
   Vector3 position(const Model& model, std::size_t g) const;
   Vector3 velocity(const Model& model, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
   Vector3 spin(const Model& model, std::size_t g) const;
-  Vector3 orientation(const Model& model, std::size_t g) const;  ///< of a grain that is not round
+  Vector3 orientation(const Model& model, std::size_t g) const;  ///< of a grain that keeps an axis
   void set_velocity(const Model& model, std::size_t g, const Vector3& v, const Vector3& w);
 };
 

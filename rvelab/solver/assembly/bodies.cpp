@@ -7,6 +7,7 @@
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/assembly/network.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
+#include "rvelab/solver/assembly/superellipsoid_rows.hpp"
 
 namespace rvelab {
 
@@ -83,7 +84,7 @@ void open_bodies(const Specimen& s, Model& model, Assembly& assembly) {
     double lever = 0, volumes = 0;
     for (std::size_t g = first; g < last; ++g) {
       bodies->owner[g] = std::int32_t(b);
-      lever = std::max(lever, bodies->offset[g].norm() + s.grains.radius[g]);
+      lever = std::max(lever, bodies->offset[g].norm() + model.reach()[g]);
       volumes += bodies->share[g] = grain_volume(s.shape, s.grains.radius[g], model.thickness);
       assembly.bodies.arm[g] = axes * bodies->offset[g];
       assembly.bodies.image[g] = nearest_image(s.cell, s.grains.position[g] - body.position - assembly.bodies.arm[g]);
@@ -135,6 +136,10 @@ void reduce_bodies(const Reduction& reduction, const Model& model, Assembly& ass
     m.orientation = normalised(after(turn, m.orientation));
     if (model.dimension() == 2) m.position[2] = m.velocity[2] = 0;
   }
+  if (moves_as_body(model.shape))
+    for (std::size_t g = 0; g < model.size(); ++g)
+      put_orientation(assembly.bodies.motion[g].orientation,
+                      assembly.rows.data() + g * std::size_t(model.row_length()));
   // From the orientation, as a state that is opened finds them.
   for (std::size_t g = 0; g < model.size(); ++g)
     assembly.bodies.arm[g] =
@@ -207,11 +212,38 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
   }
 }
 
+/// The same of bodies of one grain each that is not round: the kernels give force and torques about the centres.
+template <bool Rolling>
+void gather_solids(const PairTable& pairs, Resultant* resultants) {
+  const double *force = pairs.force.data(), *solid = pairs.solid.data();
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
+    if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
+    const double *row = force + 8 * p, *torque_i = solid + 8 * p + 4;
+    Resultant &on_i = resultants[pairs.i[p]], &on_j = resultants[pairs.j[p]];
+    for (int k = 0; k < 3; ++k) {
+      double m = 0;
+      if constexpr (Rolling) m = pairs.moment[k][p];
+      on_i.force[k] -= row[k];
+      on_i.torque[k] += torque_i[k] - m;
+      on_j.force[k] += row[k];
+      on_j.torque[k] += row[4 + k] + m;
+    }
+  }
+}
+
 }  // namespace
 
 void gather_on_bodies(const Model& model, const Assembly& assembly, std::vector<Resultant>& forces) {
   const BodyModel& bodies = *model.bodies;
   forces.assign(bodies.size(), Resultant{});
+  if (moves_as_body(model.shape)) {
+    if (model.contact.rolling)
+      gather_solids<true>(assembly.pairs, forces.data());
+    else
+      gather_solids<false>(assembly.pairs, forces.data());
+    return;
+  }
   const auto by = [&](auto work) {
     work(bodies, assembly.pairs, model.radius.data(), assembly.bodies.arm.data(), forces.data());
   };
@@ -249,6 +281,8 @@ void join_members(const Model& model, const Assembly& assembly, Network& net) {
     GrainState& grain = net.grains[b];
     const BodyMotion& m = assembly.bodies.motion[b];
     const Matrix3 axes = axes_of(m.orientation);
+    if (moves_as_body(model.shape))
+      static_cast<OwnValues&>(grain) = static_cast<const OwnValues&>(net.members[std::size_t(bodies.first[b])]);
     grain.radius = bodies.radius[b];
     grain.mass = bodies.mass[b];
     grain.inertia = grain.mass * bodies.gyration[b].maxCoeff();
@@ -256,7 +290,10 @@ void join_members(const Model& model, const Assembly& assembly, Network& net) {
     grain.velocity = m.velocity - assembly.state.last_step.mean_velocity;
     grain.spin = m.spin;
     grain.resultant = Vector3::Zero();
-    grain.orientation = axes.col(0);  // of the least moment
+    Eigen::Index least = 0;
+    bodies.gyration[b].minCoeff(&least);
+    grain.orientation = axes.col(least);
+    net.axes.push_back(axes);
     net.moments.push_back(axes * bodies.moments(b).asDiagonal() * axes.transpose());
   }
   for (ContactState& c : net.contacts) {

@@ -43,6 +43,11 @@ void set_arms(const Model&, const OutlinePlace& at, ContactState& c) {
   c.arm_i = (at.reach_i - 0.5 * at.overlap) * c.normal + at.turn_i * across;
   c.arm_j = -((at.reach_j - 0.5 * at.overlap) * c.normal + at.turn_j * across);
 }
+void set_arms(const Model&, const SolidPlace& at, ContactState& c) {
+  c.normal = {at.normal.x, at.normal.y, at.normal.z};
+  c.arm_i = {at.point.x, at.point.y, at.point.z};
+  c.arm_j = c.arm_i - c.branch;
+}
 
 void add_torques(const Model& model, const ContactState& c, const Vector3& force, Network& net) {
   GrainState &i = net.grains[std::size_t(c.i)], &j = net.grains[std::size_t(c.j)];
@@ -241,7 +246,7 @@ Network network_of(const Model& model, const Assembly& assembly) {
     grain.spin = assembly.spin(model, g);
     grain.resultant.setZero();
     if (model.round()) continue;
-    grain.orientation = assembly.orientation(model, g);
+    if (keeps_axis(model.shape)) grain.orientation = assembly.orientation(model, g);
     static_cast<OwnValues&>(grain) = own_of(model.shape, model.own, g);
   }
   with_shape(model.shape, [&](auto shape) { add_contacts<shape.value>(model, assembly, net); });

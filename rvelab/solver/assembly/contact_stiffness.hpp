@@ -31,6 +31,7 @@ inline double hertz_radius_ratio(const Model& model, const PairTable& pairs, std
   if (!model.radius_from_curvature()) return 1;
   return at.hertz_radius_ratio(model.radius[std::size_t(pairs.i[p])], model.radius[std::size_t(pairs.j[p])]);
 }
+inline double hertz_radius_ratio(const Model&, const PairTable&, std::size_t, const SolidPlace&) { return 1; }
 /// The least and the largest that it can be, however the grains turn: tip to tip and flank to flank.
 struct RadiusRatios {
   double least = 1, largest = 1;

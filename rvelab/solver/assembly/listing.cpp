@@ -48,7 +48,7 @@ bool touches(const Model& model, const Assembly& assembly, const UpperTriangle& 
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
   const double z = dimension_of(shape) == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
-  if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, 0}, xi, xj).overlap > 0;
+  if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, z}, xi, xj).overlap > 0;
   const double radii = model.radius[std::size_t(pair.i)] + model.radius[std::size_t(pair.j)];
   return x * x + y * y + z * z < radii * radii;
 }
@@ -78,6 +78,33 @@ void arrange(const Model& model, const Assembly& assembly, const std::vector<Lis
   for (std::size_t k = 0; k < n; ++k) pairs.order[k] = next[group[k]]++;
 }
 
+/// Directions in which contacts of superellipsoids are looked for first. No contact depends on them, so that neither
+/// image nor frame matters here: those of a pair of grains, in the order of (i, j).
+struct KeptDirection {
+  std::int32_t i, j;
+  double at[3];
+};
+std::vector<KeptDirection> directions_in(const PairTable& pairs) {
+  std::vector<KeptDirection> kept;
+  if (pairs.solid.empty()) return kept;
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
+    const double* at = pairs.solid.data() + 8 * p;
+    if (at[0] != 0 || at[1] != 0 || at[2] != 0) kept.push_back({pairs.i[p], pairs.j[p], {at[0], at[1], at[2]}});
+  }
+  return kept;
+}
+void put_directions(const std::vector<KeptDirection>& kept, PairTable& pairs) {
+  std::size_t k = 0;
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
+    const auto pair = std::pair(pairs.i[p], pairs.j[p]);
+    while (k < kept.size() && std::pair(kept[k].i, kept[k].j) < pair) ++k;
+    if (k < kept.size() && std::pair(kept[k].i, kept[k].j) == pair)
+      std::copy_n(kept[k].at, 3, pairs.solid.data() + 8 * p);
+  }
+}
+
 /// Makes the arrays of a new list, of pairs nearer than `skin`, and fills in the carried history, sorted by key.
 void fill(const Model& model, double skin, const std::vector<Contact>& carried, Interactions interactions, Lost lost,
           Assembly& assembly) {
@@ -95,6 +122,7 @@ void fill(const Model& model, double skin, const std::vector<Contact>& carried, 
                        "the positions");
   }
 
+  const std::vector<KeptDirection> directions = directions_in(assembly.pairs);
   if (Replaced* kept = assembly.trial.replaced; kept != nullptr && !kept->list_taken) {
     std::swap(assembly.pairs, kept->list);
     std::swap(assembly.state.list.positions, kept->list_positions);
@@ -129,6 +157,7 @@ void fill(const Model& model, double skin, const std::vector<Contact>& carried, 
     }
   });
   derive_pairs(model, pairs);
+  if (!directions.empty()) put_directions(directions, pairs);
   fill_gather_table(padded_to_lanes(model.size()), force_row_length(model.dimension()), pairs);
 }
 
@@ -169,7 +198,7 @@ void rotate_rows(const Model& model, const Matrix3& turn, Buffer& rows) {
     rotate(row);
     rotate(row + model.velocity_offset());
     if (model.dimension() == 3) rotate(row + 8);
-    if (!model.round()) {
+    if (keeps_axis(model.shape)) {
       rotate(row + 5);
       complete_row(model, g, row);
     }
@@ -282,6 +311,11 @@ Reduction rebuild(const Model& model, Assembly& assembly) {
   assembly.state.list.steps = 0;
   assembly.state.list.positions.resize(model.size());
   for (std::size_t g = 0; g < model.size(); ++g) assembly.state.list.positions[g] = listed_place(model, assembly, g);
+  if (moves_as_body(model.shape)) {
+    assembly.state.list.orientations.resize(model.size());
+    for (std::size_t g = 0; g < model.size(); ++g)
+      assembly.state.list.orientations[g] = noted_turn(assembly.rows.data() + g * std::size_t(model.row_length()));
+  }
   ++assembly.state.list.builds;
   return reduction;
 }

@@ -57,6 +57,7 @@ struct Network {
   std::vector<GrainState> members;     ///< then: the grains that they are made of
   std::vector<std::int32_t> owner;     ///< by member
   std::vector<Matrix3> moments;        ///< by body: tensor of inertia, kg m^2, cell frame
+  std::vector<Matrix3> axes;           ///< by body: principal axes as columns, cell frame
   std::vector<ContactState> contacts;  ///< ordered by (i, j, image)
   std::vector<InteractionState> interactions;  ///< kind by kind, each ordered by (i, j, image)
   double reference_contact_force = 0;          ///< N, floor of the unbalanced ratio is 1e-3 of it
@@ -65,6 +66,8 @@ struct Network {
                                                ///< grain's whole spin is this and its fluctuation
   Loading loading = Loading::quasi_static;     ///< quasi-static velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
+  /// Bodies of one grain each that has a shape of its own, whose axes are those of the shape.
+  bool has_solids() const { return moves_as_body(shape); }
   bool has_bodies() const { return !members.empty(); }
   /// What is drawn: discs, spheres, ellipses.
   const std::vector<GrainState>& drawn() const { return has_bodies() ? members : grains; }

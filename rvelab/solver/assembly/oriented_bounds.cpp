@@ -15,8 +15,13 @@ void keep_near(const Model& model, const Assembly& assembly, double skin, std::v
       const double *xi = assembly.rows.data() + std::size_t(pairs[k].i) * std::size_t(model.row_length()),
                    *xj = assembly.rows.data() + std::size_t(pairs[k].j) * std::size_t(model.row_length());
       const Image& n = pairs[k].image;
-      const double x = xj[0] - xi[0] + (l.xx * n[0] + l.xy * n[1]), y = xj[1] - xi[1] + l.yy * n[1];
-      near[k] = !Outline<shape>::farther_apart_than(skin, {x, y, 0}, xi, xj);
+      Branch b = {xj[0] - xi[0] + (l.xx * n[0] + l.xy * n[1]), xj[1] - xi[1] + l.yy * n[1], 0};
+      if constexpr (dimension_of(shape) == 3) {
+        b.x += l.xz * n[2];
+        b.y += l.yz * n[2];
+        b.z = xj[2] - xi[2] + l.zz * n[2];
+      }
+      near[k] = !Outline<shape>::farther_apart_than(skin, b, xi, xj);
     }
   });
   std::size_t kept = 0;

@@ -12,9 +12,13 @@
 // An ellipse turned by theta: |h(p - theta) - h(p)| = (a^2 - b^2) |sin(2p - theta) sin theta|/(h(p - theta) + h(p)),
 // and from h(q) >= |a cos(q) sin(q') + b sin(q) cos(q')| for any q' the sum of the two h is not below
 // (a + b) |sin(2p - theta)|. So the outline moves by (a - b) |sin theta| at most. Of other shapes l stands for a - b
-// (Extent::turning), the seventh of a row.
+// (Extent::turning), the seventh of a row. In space a turn by theta moves h by l theta at most, since dh/dtheta = |x x n|
+// of the support point x.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "rvelab/solver/assembly/assembly.hpp"
@@ -40,5 +44,18 @@ inline double outline_moved_by_turn(double noted, const double* row) {
 
 /// How fast its turn moves it at most, m/s, beside the mean spin of the cell.
 inline double outline_speed_by_turn(const double* row) { return row[7] * (row[4] < 0 ? -row[4] : row[4]); }
+
+/// The same of a superellipsoid (grains/superellipsoid.hpp): by l theta, theta = 2 asin |v| of the turn between, with
+/// asin s <= s + 0.571 s^3. `listed`: ListState::orientations.
+inline double solid_moved_by_turn(const Vector3& listed, const double* row) {
+  const double w0 = std::sqrt(std::max(0.0, 1 - listed.squaredNorm()));
+  const Vector3 v(row[13], row[14], row[15]);
+  const double s = std::min(1.0, (w0 * v - row[12] * listed - listed.cross(v)).norm());
+  return row[23] * (2 * s * (1 + 0.571 * s * s));
+}
+/// As a list notes it: of the two quaternions of a turn the one with w >= 0.
+inline Vector3 noted_turn(const double* row) {
+  return (row[12] < 0 ? -1 : 1) * Vector3(row[13], row[14], row[15]);
+}
 
 }  // namespace rvelab

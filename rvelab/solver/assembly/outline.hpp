@@ -2,20 +2,27 @@
 // answers are in SHAPE_outline.cpp.
 #pragma once
 
+#include <type_traits>
+
 #include "rvelab/grains/own_columns.hpp"
 #include "rvelab/solver/assembly/pair_place.hpp"
 
 namespace rvelab {
 
 template <Shape shape>
+using PlaceOf = std::conditional_t<moves_as_body(shape), SolidPlace, OutlinePlace>;
+
+template <Shape shape>
 struct Outline {
+  using Place = PlaceOf<shape>;
   using Own = typename Description<shape>::template Columns<One>;
-  /// Puts into a row what follows from the lengths and the axis that stands there (kernels/configuration.hpp).
+  /// In the plane. Puts into a row what follows from the lengths and the axis that stands there (kernels/configuration.hpp).
   static void complete_row(const Own& own, double* row);
-  /// From the branch (m) and the rows of the two grains: what the step kernels find, bit for bit.
-  static OutlinePlace place(const Branch& branch, const double* row_i, const double* row_j);
+  /// From the branch (m) and the rows of the two grains: in the plane what the step kernels find, bit for bit; in space
+  /// an overlap within rounding of theirs.
+  static Place place(const Branch& branch, const double* row_i, const double* row_j);
   /// Of a pair that is apart (overlap < 0): by the direction of the distance, not just one that shows it.
-  static OutlinePlace nearest_place(const OutlinePlace& apart, const double* row_i, const double* row_j);
+  static Place nearest_place(const Place& apart, const double* row_i, const double* row_j);
   /// Whether the distance is above `skin`, m.
   static bool farther_apart_than(double skin, const Branch& branch, const double* row_i, const double* row_j);
 };
@@ -24,9 +31,9 @@ struct Outline {
   template <>                                                                                           \
   void Outline<Shape::shape>::complete_row(const Own&, double*);                                        \
   template <>                                                                                           \
-  OutlinePlace Outline<Shape::shape>::place(const Branch&, const double*, const double*);               \
+  PlaceOf<Shape::shape> Outline<Shape::shape>::place(const Branch&, const double*, const double*);      \
   template <>                                                                                           \
-  OutlinePlace Outline<Shape::shape>::nearest_place(const OutlinePlace&, const double*, const double*); \
+  PlaceOf<Shape::shape> Outline<Shape::shape>::nearest_place(const Place&, const double*, const double*); \
   template <>                                                                                           \
   bool Outline<Shape::shape>::farther_apart_than(double, const Branch&, const double*, const double*);
 RVELAB_SHAPES(RVELAB_DECLARE)

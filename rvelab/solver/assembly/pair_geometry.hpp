@@ -37,7 +37,7 @@ class PairGeometry {
   /// computed last, for these places of the grains (at a rate 400 discs and 1,000 spheres 1.01 times as fast).
   bool is_apart(std::size_t p) const { return p >= near_ && touched_[p / 8] == 0; }
   /// Of outlines that are apart, by the direction of their distance.
-  OutlinePlace nearest(std::size_t p, const OutlinePlace& apart) const {
+  PlaceOf<shape> nearest(std::size_t p, const PlaceOf<shape>& apart) const {
     return Outline<shape>::nearest_place(apart, rows_ + i_[p], rows_ + j_[p]);
   }
   Branch branch(std::size_t p) const {
@@ -74,7 +74,10 @@ class PairPlaces : public PairGeometry<shape> {
     } else {
       const double* row = places_.get() + place_row_length * p;
       const Branch b = this->branch(p);
-      return OutlinePlace{b, b.length(), row[2], {row[0], row[1], 0}, row[3], row[4], row[5], row[6]};
+      if constexpr (moves_as_body(shape))
+        return SolidPlace{b, b.length(), row[3], {row[0], row[1], row[2]}, {row[4], row[5], row[6]}};
+      else
+        return OutlinePlace{b, b.length(), row[2], {row[0], row[1], 0}, row[3], row[4], row[5], row[6]};
     }
   }
   /// Of outlines that are apart by less than `gap` (m) by the direction of the distance: an overlap < 0 else shows that
@@ -103,6 +106,7 @@ void PairPlaces<shape>::find(const Model& model, const Assembly& assembly) {
   pairs.row_j = assembly.pairs.row_j.data();
   for (int k = 0; k < dimension_of(shape); ++k) pairs.image[k] = assembly.pairs.image_number[k].data();
   pairs.shifted = assembly.pairs.shifted.data();
+  pairs.solid = const_cast<double*>(assembly.pairs.solid.data());  // read alone
   const PlaceKernel find_places = model.kernels_at(assembly.state.last_step.loading).places;
   in_pieces(padded, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     find_places(c, pairs, assembly.rows.data(), long(first), long(last), places_.get());

@@ -42,4 +42,25 @@ struct OutlinePlace {
   double opening_by(double spin_i, double spin_j) const { return spin_i * turn_i + spin_j * turn_j; }
 };
 
+/// The same of a pair of superellipsoids. Of a pair that is apart normal and point are those that show it.
+struct SolidPlace {
+  Branch branch;
+  double length, overlap;
+  Branch normal;  ///< of length 1
+  Branch point;   ///< m, contact point from the centre of i
+
+  const Branch& along() const { return normal; }
+  double along_length() const { return 1; }
+  /// From the centre of j.
+  Branch point_j() const { return {point.x - branch.x, point.y - branch.y, point.z - branch.z}; }
+  /// Rate at which spins (rad/s, three each) open the contact, m/s: n.(w_j x x_j - w_i x x_i).
+  double opening_by(const double* spin_i, const double* spin_j) const {
+    const auto by = [this](const double* w, const Branch& x) {
+      return normal.x * (w[1] * x.z - w[2] * x.y) + normal.y * (w[2] * x.x - w[0] * x.z) +
+             normal.z * (w[0] * x.y - w[1] * x.x);
+    };
+    return by(spin_j, point_j()) - by(spin_i, point);
+  }
+};
+
 }  // namespace rvelab

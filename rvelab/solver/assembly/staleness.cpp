@@ -17,7 +17,8 @@ constexpr double smallest_skin = 0.01;  ///< mean radii
 
 /// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m. Of grains
 /// that are not round that of their outlines: what the turn moves them is added to what the centre moved.
-template <bool oriented>
+enum class Outlines { round, in_plane, in_space };
+template <Outlines outlines>
 double measured_displacements(const Model& model, const Assembly& assembly, const Matrix3& f_since) {
   struct Largest {
     double most = 0, second = 0;
@@ -33,7 +34,7 @@ double measured_displacements(const Model& model, const Assembly& assembly, cons
     for (std::size_t g = first; g < last; ++g) {
       const double* x = assembly.rows.data() + g * model.row_length();
       const Vector3& from = assembly.state.list.positions[g];
-      if constexpr (oriented) {
+      if constexpr (outlines == Outlines::in_plane) {
         const double dx = x[0] - (m.xx * from[0] + m.xy * from[1]), dy = x[1] - m.yy * from[1];
         const double moved = std::sqrt(dx * dx + dy * dy) + outline_moved_by_turn(from[2], x);
         here.add(moved * moved);
@@ -41,7 +42,13 @@ double measured_displacements(const Model& model, const Assembly& assembly, cons
         const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
         const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
         const double dz = model.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
-        here.add(dx * dx + dy * dy + dz * dz);
+        if constexpr (outlines == Outlines::in_space) {
+          const double moved =
+              std::sqrt(dx * dx + dy * dy + dz * dz) + solid_moved_by_turn(assembly.state.list.orientations[g], x);
+          here.add(moved * moved);
+        } else {
+          here.add(dx * dx + dy * dy + dz * dz);
+        }
       }
     }
     of_piece[piece] = here;
@@ -65,7 +72,7 @@ double next_skin(const Model& model, const ListState& list) {
 
 Vector3 listed_place(const Model& model, const Assembly& assembly, std::size_t g) {
   Vector3 place = assembly.position(model, g);
-  if (!model.round()) place[2] = noted_axis(assembly.orientation(model, g));
+  if (keeps_axis(model.shape)) place[2] = noted_axis(assembly.orientation(model, g));
   return place;
 }
 
@@ -88,8 +95,11 @@ bool list_is_stale(const Model& model, Assembly& assembly, double margin) {
   if (assembly.state.list.positions.size() != model.size()) return true;
   // The bound sums the fastest grain of every step; what the grains really moved is a fifth of it (measured: a third of
   // the rebuilds). Looking is worth it while a tenth of the skin is left.
-  const double moved = model.round() ? measured_displacements<false>(model, assembly, f_since)
-                                     : measured_displacements<true>(model, assembly, f_since);
+  const bool solid = moves_as_body(model.shape);
+  if (solid && assembly.state.list.orientations.size() != model.size()) return true;
+  const double moved = model.round() ? measured_displacements<Outlines::round>(model, assembly, f_since)
+                       : solid       ? measured_displacements<Outlines::in_space>(model, assembly, f_since)
+                                     : measured_displacements<Outlines::in_plane>(model, assembly, f_since);
   if (!(moved < allowed - 0.1 * skin)) return true;
   assembly.state.list.travel = moved / (2 * (1 + strain));
   return false;

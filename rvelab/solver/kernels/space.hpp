@@ -187,7 +187,10 @@ void space_pairs(const StepConstants& constants, const PairArrays& arrays, const
     Shape::template locate<T>(c, p, rows, run.first, run.count, scratch);
     space_motion<Shape, Law, T>(c, p, rows, run.first, run.count, scratch);
     space_forces<Shape, Law, T>(c, p, run.first, run.count, scratch, dissipation);
-    space_force_rows<Shape, T>(p, run.first, run.count, scratch);
+    if constexpr (Shape::By::round)
+      space_force_rows<Shape, T>(p, run.first, run.count, scratch);
+    else
+      Shape::template force_rows<T>(p, run.first, run.count, scratch);
   }
 }
 

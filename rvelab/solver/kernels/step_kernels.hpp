@@ -111,7 +111,11 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
     kernels.evaluate = pair_kernel_for<Pairs, W, false>(key);
   }
   if constexpr (Pairs::By::round) set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
-  if (key.rolling || key.moments)
+  // Bodies have their own step (loading/body_motion.hpp).
+  if constexpr (Pairs::By::rigid) {
+    kernels.lanes = W;
+    return;
+  } else if (key.rolling || key.moments)
     set_grain_kernels<Pairs, W, true>(kernels);
   else
     set_grain_kernels<Pairs, W, false>(kernels);

@@ -1,74 +1,294 @@
-// Normal forces of superellipsoids: from rows of positions, quaternions and shapes to forces and moments, W pairs at a
-// time.
+// The geometry of pairs of superellipsoids for the contact update in space (space.hpp): normal and overlap by
+// superellipsoid/lanes.hpp, of specimens of ellipsoids alone by superellipsoid/ellipsoids.hpp. The contact point halves
+// the line between the points of both, x_i from the centre of i and x_j = x_i - b from that of j.
 //
-//   F on j = f n,   F on i = -f n,   M_i = x x (-f n),   M_j = (x - d) x f n,   x the contact from the centre of i
+//   slip and opening: those of v + w_j x x_j - w_i x x_i,   T_i = -x_i x F,   T_j = x_j x F,   F the force on j
 //
-// so that forces and moments of a pair are in balance; with f a function of the overlap alone they have an energy
-// (superellipsoid/overlap.hpp). Slip, rolling and dashpots are those of space.hpp, at the same point.
+// x_i - x_j is the branch, whatever they are, so that moments balance to rounding. The overlap changes by -n.(that
+// velocity): h_i(n) changes by n.(w x x) where the body turns, and a turn of n changes nothing. So the springs do no
+// work but their own.
 #pragma once
 
+#include "rvelab/solver/kernels/space.hpp"
+#include "rvelab/solver/kernels/spheres.hpp"
+#include "rvelab/superellipsoid/ellipsoids.hpp"
 #include "rvelab/superellipsoid/lanes.hpp"
 
 namespace rvelab {
 namespace {
 
-/// Columns of a grain's row, from 0 on: x y z and the rolling radius, m; quaternion w x y z into the world's axes; half
-/// axes, m, and share_xy; share_z, root_xy, root_z (superellipsoid/support.hpp), one to spare.
-constexpr int superellipsoid_row = 16;
-
-template <int W>
+/// Form and axes from a grain row (grains/superellipsoid.hpp): its columns 12 to 23, and the rolling radius.
+template <class V>
 struct SuperellipsoidColumns {
-  using V = typename Lanes<W>::V;
-  V columns[superellipsoid_row];
-  Triple<V> position() const { return {columns[0], columns[1], columns[2]}; }
+  V turn[4], half[4], rest[4], rolling;
+
   SuperellipsoidForm<V> form() const {
-    return {{columns[8], columns[9], columns[10]}, columns[11], columns[12], columns[13], columns[14], columns[3]};
+    // Rows that pad the lanes hold zeros: they are spheres of 1e-30 m.
+    return {{half[0] + 1e-30, half[1] + 1e-30, half[2] + 1e-30},
+            1.0 - half[3],
+            1.0 - rest[0],
+            rest[1] - 0.5,
+            rest[2] - 0.5,
+            rolling};
   }
   SuperellipsoidAxes<V> axes() const {
-    const V w = columns[4], x = columns[5], y = columns[6], z = columns[7];
+    const V w = turn[0], x = turn[1], y = turn[2], z = turn[3];
     const V xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
     return {{1.0 - 2.0 * (yy + zz), 2.0 * (xy + wz), 2.0 * (xz - wy)},
             {2.0 * (xy - wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz + wx)},
             {2.0 * (xz + wy), 2.0 * (yz - wx), 1.0 - 2.0 * (xx + yy)}};
   }
 };
-
-/// Rows of W grains.
 template <int W>
-inline __attribute__((always_inline)) SuperellipsoidColumns<W> superellipsoid_columns(const double* rows,
-                                                                                      const std::int32_t* grains) {
-  SuperellipsoidColumns<W> all;
-  for (int part = 0; part < superellipsoid_row; part += 4)
-    ColumnsOf<W>::load([&](int k) { return rows + long(grains[k]) * superellipsoid_row + part; }, all.columns + part);
-  return all;
+inline __attribute__((always_inline)) SuperellipsoidColumns<typename Lanes<W>::V> columns_of_shapes(
+    const double* rows, const std::int32_t* row) {
+  SuperellipsoidColumns<typename Lanes<W>::V> c;
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 12; }, c.turn);
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 16; }, c.half);
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 20; }, c.rest);
+  c.rolling = Lanes<W>::collected([=](int lane) { return rows[row[lane] + 3]; });
+  return c;
 }
 
-/// On the second grain of each pair; the first has the opposite force.
-template <class V>
-struct NormalForces {
-  V overlap;
-  Triple<V> force, moment_i, moment_j;  ///< N, N m
+/// From one row, for what looks at pairs one by one.
+inline SuperellipsoidColumns<double> shape_in_row(const double* row) {
+  const std::int32_t start = 0;
+  return columns_of_shapes<1>(row, &start);
+}
+
+template <int W>
+inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> superellipsoid_pair(
+    const StepConstants& c, const PairArrays& p, const double* rows, long at) {
+  using V = typename Lanes<W>::V;
+  const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
+  V d[4];
+  gather_differences<W>(rows, i, j, d);
+  const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, i), of_j = columns_of_shapes<W>(rows, j);
+  return {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch_of<V>(c, p, at, {d[0], d[1], d[2]})};
+}
+
+/// What the passes hand on.
+struct SuperellipsoidScratch : SpaceScratch {
+  ScratchColumn overlap;
+  TripleColumn branch, arm_i, arm_j;
+  ScratchColumn matrix_i[7], matrix_j[7];  ///< ellipsoids
 };
 
-/// `shift`: from the cell, added to positions of j less those of i, m. `guess`: directions to begin with, which forces
-/// do not depend on. `law`: f of the overlap, N, for overlaps that are not negative.
-template <int W, class V, class Law>
-inline __attribute__((always_inline)) NormalForces<V> normal_forces(const double* rows, const std::int32_t* grains_i,
-                                                                    const std::int32_t* grains_j,
-                                                                    const Triple<V>& shift, Triple<V>& guess,
-                                                                    const Law& law) {
-  const SuperellipsoidColumns<W> i = superellipsoid_columns<W>(rows, grains_i),
-                                 j = superellipsoid_columns<W>(rows, grains_j);
-  const V one = V{} + 1.0, zero = V{};
-  const SuperellipsoidPair<V> pair = {i.form(), j.form(), i.axes(), j.axes(),
-                                      plus(plus(j.position(), -one, i.position()), one, shift)};
-  const ContactsOf<V> at = contacts_of(pair, guess);
-  const auto touch = at.overlap > 0.0;
-  const V size = touch ? law(touch ? at.overlap : zero) : zero;
-  const Triple<V> force = chosen(touch, times(size, at.n), Triple<V>{zero, zero, zero});
-  const Triple<V> arm_i = chosen(touch, at.point, Triple<V>{zero, zero, zero});
-  const Triple<V> arm_j = chosen(touch, plus(at.point, -one, pair.branch), Triple<V>{zero, zero, zero});
-  return {touch ? at.overlap : zero, force, cross(force, arm_i), cross(arm_j, force)};
+template <int W, class V>
+inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch, const ContactsOf<V>& contacts, long k,
+                                                        SuperellipsoidScratch& s) {
+  const auto touch = contacts.overlap > 0.0;
+  const Triple<V> none = {V{}, V{}, V{}};
+  s.normal.store(k, contacts.n);
+  store_as(s.overlap.at + k, contacts.overlap);
+  s.arm_i.store(k, chosen(touch, contacts.point, none));
+  s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
+}
+
+/// Contacts of W pairs. A guess is kept beside each pair (PairArrays::solid); the contact does not depend on it.
+template <int W>
+inline __attribute__((always_inline)) ContactsOf<typename Lanes<W>::V> contacts_from_guess(
+    const SuperellipsoidPair<typename Lanes<W>::V>& pair, double* solid) {
+  using V = typename Lanes<W>::V;
+  V guess[4];
+  columns_of<W>(solid, 8, guess);
+  Triple<V> direction = {guess[0], guess[1], guess[2]};
+  const ContactsOf<V> contacts = contacts_of(pair, direction);
+  const V next[4] = {direction.x, direction.y, direction.z, V{}};
+  rows_of<W>(next, solid, 8);
+  return contacts;
+}
+
+/// Branch, normal, overlap and arms. Not inlined: it is long, and the same for every law.
+template <int W>
+__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                     long first, long count, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    s.branch.store(k, pair.branch);
+    put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, p.solid + 8 * (first + k)), k, s);
+  }
+}
+
+template <class V>
+inline __attribute__((always_inline)) void put_matrix(const EllipsoidMatrix<V>& m, long k, ScratchColumn* to) {
+  const V all[7] = {m.xx, m.yy, m.zz, m.yz, m.xz, m.xy, m.rolling};
+  for (int column = 0; column < 7; ++column) store_as(to[column].at + k, all[column]);
+}
+template <class V>
+inline __attribute__((always_inline)) EllipsoidMatrix<V> matrix_in(const ScratchColumn* from, long k) {
+  const auto at = [&](int column) { return load_as<V>(from[column].at + k); };
+  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
+}
+
+/// What a search finds for one lane of W pairs.
+template <int W>
+struct EllipsoidSearch {
+  const StepConstants& c;
+  const PairArrays& p;
+  const double* rows;
+  long at;
+  __attribute__((noinline)) ContactsOf<double> operator()(int lane) const {
+    const SuperellipsoidContact found = contact_of(superellipsoid_pair<1>(c, p, rows, at + lane));
+    return {found.overlap, found.n, found.point, radii_of_curvature(found.at.i), radii_of_curvature(found.at.j)};
+  }
+};
+
+/// The same of ellipsoids, the pairs of a chunk side by side: roots and divisions of one block of lanes fill the time
+/// of another's.
+template <int W>
+__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                long first, long count, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  long blocks[chunk_pairs / W], open = 0;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    const EllipsoidPair<V> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                                   ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
+    s.branch.store(k, pair.branch);
+    put_matrix(both.i, k, s.matrix_i);
+    put_matrix(both.j, k, s.matrix_j);
+    s.normal.store(k, first_direction(both));
+    blocks[open++] = k;
+  }
+  for (int evaluation = 0; open > 0; ++evaluation) {
+    const long all = open;
+    open = 0;
+    for (long block = 0; block < all; ++block) {
+      const long k = blocks[block];
+      const EllipsoidPair<V> pair = {matrix_in<V>(s.matrix_i, k), matrix_in<V>(s.matrix_j, k),
+                                     s.branch.template load<V>(k)};
+      const Triple<V> n = s.normal.template load<V>(k);
+      const EllipsoidStep<V> step = ellipsoid_step(pair, n);
+      if (evaluation < superellipsoid_steps && any_of(!is_done(step))) {
+        s.normal.store(k, chosen(is_done(step), n, turned_by(n, step.turn)));
+        blocks[open++] = k;
+      } else {
+        put_contacts<W>(pair.branch, contacts_by(pair, n, step, EllipsoidSearch<W>{c, p, rows, first + k}), k, s);
+      }
+    }
+  }
+}
+
+/// What PlaceKernel asks for: n, overlap, contact point from the centre of i.
+template <int W, bool Ellipsoids>
+void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, const double* rows, long begin, long end,
+                                double* places) {
+  using V = typename Lanes<W>::V;
+  SuperellipsoidScratch s;
+  double guesses[8 * chunk_pairs];  // not kept: threads may look at one pair together
+  for (long first = begin; first < end; first += chunk_pairs) {
+    const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
+    if constexpr (Ellipsoids) {
+      ellipsoid_places<W>(c, p, rows, first, count, s);
+    } else {
+      for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
+      for (long k = 0; k < count; k += W) {
+        const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+        put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, guesses + 8 * k), k, s);
+      }
+    }
+    for (long k = 0; k < count; k += W) {
+      const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
+      const V near[4] = {n.x, n.y, n.z, load_as<V>(s.overlap.at + k)}, far[4] = {point.x, point.y, point.z, V{}};
+      rows_of<W>(near, places + place_row_length * (first + k), place_row_length);
+      rows_of<W>(far, places + place_row_length * (first + k) + 4, place_row_length);
+    }
+  }
+}
+
+/// What the contact update in space (space.hpp) asks of a shape.
+template <bool Ellipsoids>
+struct SuperellipsoidPairs {
+  using By = SuperellipsoidGrain;
+  using Scratch = SuperellipsoidScratch;
+
+  template <class T>
+  static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
+                                                           const double* rows, long first, long count, Scratch& s) {
+    if constexpr (Ellipsoids)
+      ellipsoid_places<T::W>(c, p, rows, first, count, s);
+    else
+      superellipsoid_places<T::W>(c, p, rows, first, count, s);
+  }
+  template <class V>
+  static inline __attribute__((always_inline)) V overlap(long k, const Scratch& s) {
+    return load_as<V>(s.overlap.at + k);
+  }
+  template <class T, class V>
+  static inline __attribute__((always_inline)) SpaceMotion<V> motion(const StepConstants& c, const PairArrays& p,
+                                                                     const double* rows, long at, const Triple<V>& n,
+                                                                     long k, Scratch& s) {
+    constexpr int W = T::W;
+    const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
+    const double half_dt = 0.5 * c.dt;
+    V u[4], a[4], b[4];
+    gather_differences<W>(rows + 4, i, j, u);
+    ColumnsOf<W>::load([=](int lane) { return rows + i[lane] + 8; }, a);
+    ColumnsOf<W>::load([=](int lane) { return rows + j[lane] + 8; }, b);
+    if constexpr (T::Rolling && T::Advance)
+      s.spin_difference.store(k, Triple<V>{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+    const V one = V{} + 1.0;
+    const Triple<V> v = {u[0], u[1], u[2]}, px = plus(s.branch.load<V>(k), V{} - half_dt, v);
+    const Triple<V> centres = {v.x + (c.rate.xx * px.x + (c.rate.xy * px.y + c.rate.xz * px.z)),
+                               v.y + (c.rate.yy * px.y + c.rate.yz * px.z), v.z + c.rate.zz * px.z};
+    // The mean spin of the cell is added to both grains.
+    const Triple<V> wi = {a[0] + c.spin[0], a[1] + c.spin[1], a[2] + c.spin[2]},
+                    wj = {b[0] + c.spin[0], b[1] + c.spin[1], b[2] + c.spin[2]};
+    const Triple<V> by_j = cross(wj, s.arm_j.load<V>(k)), by_i = cross(wi, s.arm_i.load<V>(k));
+    const Triple<V> at_point = plus(plus(centres, one, by_j), -one, by_i);
+    const V opening = dot(n, at_point);
+    return {plus(at_point, -opening, n), opening, 0.5 * dot(n, plus(wi, one, wj))};
+  }
+  /// Force on j and torque on j; the torque on i stands in PairArrays::solid.
+  template <class T>
+  static inline __attribute__((always_inline)) void force_rows(const PairArrays& p, long first, long count,
+                                                               const Scratch& s) {
+    constexpr int W = T::W;
+    using V = typename Lanes<W>::V;
+    for (long k = 0; k < count; k += W) {
+      const long at = first + k;
+      const V normal = load_as<V>(s.normal_force.at + k);
+      const Triple<V> along = T::Dashpot ? s.velocity.load<V>(k) : load_triple<V>(p.tangential, at);
+      const Triple<V> f = plus(along, normal, s.normal.load<V>(k));
+      const Triple<V> on_j = cross(s.arm_j.load<V>(k), f), on_i = cross(f, s.arm_i.load<V>(k));
+      const V force[4] = {f.x, f.y, f.z, V{}}, torque_j[4] = {on_j.x, on_j.y, on_j.z, V{}},
+              torque_i[4] = {on_i.x, on_i.y, on_i.z, V{}};
+      rows_of<W>(force, p.force + 8 * at, 8);
+      rows_of<W>(torque_j, p.force + 8 * at + 4, 8);
+      rows_of<W>(torque_i, p.solid + 8 * at + 4, 8);
+    }
+  }
+  template <int W>
+  static bool may_touch(const StepConstants& c, const PairArrays& p, const double* rows, long first);
+};
+
+/// Whether one of eight pairs is not shown to be apart: of ellipsoids by the direction in which the branch leaves that
+/// of the summed matrices, of others by the direction kept, or the branch where there is none.
+template <bool Ellipsoids>
+template <int W>
+__attribute__((noinline)) bool SuperellipsoidPairs<Ellipsoids>::may_touch(const StepConstants& c, const PairArrays& p,
+                                                                          const double* rows, long first) {
+  using V = typename Lanes<W>::V;
+  for (long at = first; at < first + 8; at += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, at);
+    if constexpr (Ellipsoids) {
+      const EllipsoidMatrix<V> i = ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                               j = ellipsoid_matrix(pair.form_j.half, pair.axes_j);
+      const Triple<V> n = first_direction(EllipsoidPair<V>{i, j, pair.branch});
+      const V heights = square_root(dot(n, times(i, n))) + square_root(dot(n, times(j, n)));
+      if (any_of(!(heights - dot(n, pair.branch) < -1e-12 * heights))) return true;
+    } else {
+      V guess[4];
+      columns_of<W>(p.solid + 8 * at, 8, guess);
+      const Triple<V> kept = {guess[0], guess[1], guess[2]};
+      const auto has = dot(kept, kept) >= 0.25;
+      const OverlapAt<V> along = overlap_at(pair, chosen(has, kept, of_length_1(pair.branch)));
+      if (any_of(!(along.overlap < -1e-12 * (along.i.height + along.j.height)))) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace

@@ -85,10 +85,11 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
     double by_cell = n.x * (rate.xx * b.x + rate.xy * b.y) + n.y * (rate.yy * b.y);
     double by_grains = n.x * (vj[0] - vi[0]) + n.y * (vj[1] - vi[1]);
     if constexpr (D == 3) {
-      by_cell += (b.x * rate.xz + b.y * rate.yz + b.z * rate.zz) * b.z;
-      by_grains += b.z * (vj[2] - vi[2]);
+      by_cell += (n.x * rate.xz + n.y * rate.yz + n.z * rate.zz) * b.z;
+      by_grains += n.z * (vj[2] - vi[2]);
     }
-    if constexpr (!is_round(shape)) by_grains += geometry.opening_by(vi[2], vj[2]);
+    if constexpr (keeps_axis(shape)) by_grains += geometry.opening_by(vi[2], vj[2]);
+    if constexpr (moves_as_body(shape)) by_grains += geometry.opening_by(vi + 4, vj + 4);
     const double opening = (by_cell + by_grains) / geometry.along_length(),
                  closing = -by_cell / geometry.along_length();
     const double shrinks = double((closing * increment > gap) & (closing > 0));
@@ -176,7 +177,11 @@ GrainMotion grains_in(const Model& model, const Assembly& assembly, const Stiffn
     }
     if (resultant > 0) motion.resultants += resultant / stiffness(g);  // row sums count kn twice
     motion.kinetic += 0.5 * model.mass[g] * speed;
-    if constexpr (!is_round(shape))
+    if constexpr (moves_as_body(shape)) {
+      const double* w = v + 4;
+      speed = square(std::sqrt(speed) + v[23 - 4] * std::sqrt(square(w[0]) + square(w[1]) + square(w[2])));
+    }
+    if constexpr (keeps_axis(shape))
       speed = square(std::sqrt(speed) + outline_speed_by_turn(v - model.velocity_offset()));
     motion.fastest = std::max(motion.fastest, speed);
   }

@@ -162,7 +162,17 @@ class TermsOfPairs {
     t.nx = n.x / geometry.along_length();
     t.ny = n.y / geometry.along_length();
     if constexpr (D == 3) t.nz = n.z / geometry.along_length();
-    if constexpr (!is_round(shape)) {
+    if constexpr (moves_as_body(shape)) {
+      // To the surfaces, half an overlap beyond the contact point: of spheres the radius, as where they move by
+      // themselves.
+      for (int side = 0; side < 2; ++side) {
+        const Branch x = side == 0 ? geometry.point : geometry.point_j();
+        const double to_surface = side == 0 ? 0.5 * overlap : -0.5 * overlap;
+        const double along = x.x * n.x + (x.y * n.y + x.z * n.z), squared = x.x * x.x + (x.y * x.y + x.z * x.z);
+        t.turn[side] = std::sqrt(std::max(0.0, squared - along * along));
+        t.reach[side] = std::sqrt(squared - along * along + (along + to_surface) * (along + to_surface));
+      }
+    } else if constexpr (!is_round(shape)) {
       t.reach[0] = geometry.reach_i;
       t.reach[1] = geometry.reach_j;
       t.turn[0] = std::abs(geometry.turn_i);
@@ -191,7 +201,17 @@ inline __attribute__((always_inline)) void add(const Model& model, const PairTer
                                                std::size_t g, bool as_j, GrainSums<dimension_of(shape)>& sums) {
   constexpr int D = dimension_of(shape);
   const double r = model.radius.data()[g];
-  if constexpr (!is_round(shape)) {
+  if constexpr (moves_as_body(shape)) {
+    const double outer = model.outer_radius[g], farthest = model.form[9 * g + 8], turn = t.turn[as_j];
+    sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
+    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * outer * outer + 2 * t.firm.rolling +
+                                                          normal_to_rotation(t.firm.normal, farthest, r));
+    if (!t.touching) return;
+    add_to<D>(sums.stiffness,
+              stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx, t.ny, t.nz));
+    sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
+                     normal_to_rotation(t.now.normal, turn, r);
+  } else if constexpr (!is_round(shape)) {
     // What may come to touch may do so anywhere.
     const Extent extent = Description<shape>::extent(own_of<Description<shape>>(model.own, g));
     const double a = extent.outer, farthest = extent.turning, turn = t.turn[as_j];
@@ -352,7 +372,7 @@ RowSums sums_over_pairs(const Model& model, const Assembly& assembly) {
       if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
     }
   });
-  if (model.bodies) {
+  if (model.bodies && is_round(shape)) {  // of other bodies the sums of their grains are theirs
     const std::vector<GrainSums<D>> of_bodies = sums_of_bodies<shape, Force>(model, assembly);
     for (std::size_t g = 0; g < n; ++g) {
       const GrainSums<D>& of = of_bodies[std::size_t(model.bodies->owner[g])];

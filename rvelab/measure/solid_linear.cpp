@@ -1,0 +1,83 @@
+#include "rvelab/measure/solid_linear.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "rvelab/specimen/solids.hpp"
+
+namespace rvelab {
+namespace {
+
+/// The matrix of v -> a x v.
+Matrix3 cross_of(const Vector3& a) {
+  Matrix3 m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
+}
+
+/// Radii of curvature across n (m), n the outward normal of a grain. A flat side has no bound; beyond a million of its
+/// sizes a contact cannot tell.
+Matrix3 curvature_radii(const GrainState& grain, const Matrix3& axes, const Vector3& n) {
+  const auto column = [&](int k) { return Triple<double>{axes(0, k), axes(1, k), axes(2, k)}; };
+  const SupportAt<double> at =
+      support_at(plain_form_of(superellipsoid_of(grain)), SuperellipsoidAxes<double>{column(0), column(1), column(2)},
+                 Triple<double>{n.x(), n.y(), n.z()});
+  const double most = 1e6 * grain.radius;
+  Matrix3 radii = Matrix3::Zero();
+  for (const SupportMode<double>& mode : {at.xy, at.z}) {
+    const Vector3 along(mode.along.x, mode.along.y, mode.along.z);
+    const double squared = along.squaredNorm();
+    if (squared > 0) radii += std::min(mode.stiffness * squared, most) / squared * along * along.transpose();
+  }
+  return radii;
+}
+
+}  // namespace
+
+LinearOutlineContact linearised_solids(const ContactState& contact, const GrainState& grain_i, const Matrix3& axes_i,
+                                       const GrainState& grain_j, const Matrix3& axes_j) {
+  const Vector3 &n = contact.normal, &ft = contact.tangential_force, &moment = contact.rolling_moment;
+  const Vector3 &xi = contact.arm_i, &xj = contact.arm_j, half = 0.5 * contact.overlap * n, pi = xi + half,
+                pj = xj - half;
+  const Matrix3 across = Matrix3::Identity() - n * n.transpose();
+  ContactMatrix db = ContactMatrix::Zero(), turn_i = ContactMatrix::Zero(), turn_j = ContactMatrix::Zero();
+  db.block<3, 3>(0, 0).setIdentity();
+  turn_i.block<3, 3>(0, 3).setIdentity();
+  turn_j.block<3, 3>(0, 6).setIdentity();
+  // theta x a = -a x theta
+  const auto turned_by = [](const ContactMatrix& theta, const Vector3& a) -> ContactMatrix {
+    return -cross_of(a) * theta;
+  };
+
+  const ContactMatrix moved = db + turned_by(turn_j, xj) - turned_by(turn_i, xi);
+  const ContactRow overlap = -n.transpose() * moved;
+  const Matrix3 ci = curvature_radii(grain_i, axes_i, n), cj = curvature_radii(grain_j, axes_j, -n);
+  const Matrix3 stiff = ci + cj - contact.overlap * across + grain_i.radius * n * n.transpose();
+  const ContactMatrix push = across * (db + turned_by(turn_j, pj) - turned_by(turn_i, pi)) + ci * turned_by(turn_i, n) +
+                             cj * turned_by(turn_j, n);
+  const ContactMatrix dn = across * stiff.ldlt().solve(push);
+
+  const ContactRow twist = 0.5 * n.transpose() * (turn_i + turn_j);
+  const auto turned = [&](const Vector3& v) -> ContactMatrix { return -n * (v.transpose() * dn) + n.cross(v) * twist; };
+  const ContactMatrix dft = turned(ft) - contact.tangential_stiffness * across * moved;
+  const ContactMatrix dm = turned(moment) - contact.rolling_stiffness * across * (turn_j - turn_i);
+
+  LinearOutlineContact linear;
+  linear.opening = -overlap;
+  linear.law.force = contact.normal_stiffness * n * overlap + contact.normal_force * dn + dft;
+  const ContactMatrix dpi = turned_by(turn_i, pi) + ci * (dn - turned_by(turn_i, n));
+  const ContactMatrix dpj = turned_by(turn_j, pj) - cj * (dn - turned_by(turn_j, n));
+  const ContactMatrix dxi = 0.5 * (dpi + dpj + db), dxj = dxi - db;
+  const Matrix3 force = cross_of(contact.force());
+  linear.law.torque_i = force * dxi - cross_of(xi) * linear.law.force - dm;
+  linear.law.torque_j = -force * dxj + cross_of(xj) * linear.law.force + dm;
+
+  const ContactRow relative = 0.5 / contact.overlap * overlap;
+  const ContactMatrix rolling = moment * relative;
+  linear.unloading.force = ft * relative;
+  linear.unloading.torque_i = -cross_of(xi) * linear.unloading.force - rolling;
+  linear.unloading.torque_j = cross_of(xj) * linear.unloading.force + rolling;
+  return linear;
+}
+
+}  // namespace rvelab

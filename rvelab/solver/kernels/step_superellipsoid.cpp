@@ -1,0 +1,21 @@
+// Step kernels of superellipsoids, for one instruction set or the scalar reference (step_kernels.hpp).
+//
+// Declared in instruction_sets.hpp.
+#include "rvelab/solver/kernels/instruction_sets.hpp"
+#include "rvelab/solver/kernels/step_kernels.hpp"
+#include "rvelab/solver/kernels/superellipsoids.hpp"
+
+namespace rvelab {
+
+template <>
+void StepKernels<Shape::superellipsoid>::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
+  if (key.ellipsoids) {
+    set_kernels<SuperellipsoidPairs<true>, RVELAB_LANES>(key, kernels);
+    kernels.places = &superellipsoid_pair_places<RVELAB_LANES, true>;
+  } else {
+    set_kernels<SuperellipsoidPairs<false>, RVELAB_LANES>(key, kernels);
+    kernels.places = &superellipsoid_pair_places<RVELAB_LANES, false>;
+  }
+}
+
+}  // namespace rvelab
