@@ -286,6 +286,9 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   grains.material.resize(grain_count);
   grains.semi_major.resize(grain_count);
   grains.semi_minor.resize(grain_count);
+  for (auto* column : {&grains.half_x, &grains.half_y, &grains.half_z, &grains.exponent_xy, &grains.exponent_z})
+    column->resize(grain_count);
+  specimen.state.list.orientations.resize(grain_count);
   for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin, &grains.orientation})
     vectors->resize(grain_count);
   specimen.state.list.positions.resize(grain_count);
@@ -316,6 +319,8 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
 
   Grains& grains = s.grains;
   grains.semi_major = grains.semi_minor = {};
+  grains.half_x = grains.half_y = grains.half_z = grains.exponent_xy = grains.exponent_z = {};
+  s.state.list.orientations = {};
   grains.orientation = {};
   s.bodies = {};  // they know no interactions
   s.members = {};

@@ -1,4 +1,4 @@
-"""tools/validate solids: random packings of superellipsoids without friction. solids.py RVELAB [NUMBER [SPECIMENS]]
+"""tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB [NUMBER [SPECIMENS]]
 
 Solid fraction and mechanical coordination number beside what is published. Without friction a random packing of
 frictionless grains with all their rotations has Z up to 12, of spheres 6; ellipsoids near spheres are hypostatic (Donev et
@@ -11,13 +11,12 @@ import subprocess
 import sys
 import tempfile
 
-program, number, specimens = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 300, \
-    int(sys.argv[3]) if len(sys.argv) > 3 else 3
-shapes = [("spheres", [1, 1, 1], None, "0.64, 6"),
-          ("1.25 : 1 : 0.8", [1.25, 1, 0.8], None, "0.735, 10 to 12 (Donev et al. 2004)"),
-          ("1 : 1 : 0.6", [1, 1, 0.6], None, "0.70 to 0.71, about 10 (Donev et al. 2004)"),
-          ("2 : 1 : 1", [2, 1, 1], None, "0.70, about 10 (Donev et al. 2004)"),
-          ("1 : 1 : 1, exponents 4", [1, 1, 1], [4, 4], "0.67 to 0.70, below 12 (Jiao et al. 2010)")]
+program, number, specimens = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 120, \
+    int(sys.argv[3]) if len(sys.argv) > 3 else 2
+shapes = [("spheres", [1, 1, 1], "0.64, 6"),
+          ("1.25 : 1 : 0.8", [1.25, 1, 0.8], "0.735, 10 to 12 (Donev et al. 2004)"),
+          ("1 : 1 : 0.6", [1, 1, 0.6], "0.68 to 0.71, about 10 (spheroids, Donev et al. 2004)"),
+          ("2 : 1 : 1", [2, 1, 1], "0.68 to 0.71, about 10 (spheroids, Donev et al. 2004)")]
 
 
 def skeleton(path):
@@ -35,15 +34,13 @@ def skeleton(path):
 
 print(f"{number} grains of one size, friction 0, {specimens} specimens of each; 100 kPa of 7 GPa")
 print("half axes | solid fraction | Z of the skeleton | published")
-for name, half, exponents, published in shapes:
+for name, half, published in shapes:
     fractions, contacts = [], []
     for seed in range(1, specimens + 1):
         with tempfile.TemporaryDirectory() as folder:
             sets = ["pack.number=" + str(number), "pack.seed=" + str(seed), "grains.half_axes=" + str(half),
                     "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=0",
                     "material.quartz.friction=0", "target.pressure_Pa=1e5", "target.unbalanced=1e-3", "target.stress_tolerance=1e-2"]
-            if exponents:
-                sets += ["pack.shape=superellipsoid", "grains.exponents=" + str(exponents)]
             arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5"]
             for each in sets:
                 arguments += ["--set", each]

@@ -68,6 +68,10 @@ PackedGrains read_grains(const std::string& file) {
     throw InputError(file +
                      ": the grains are ellipses; power cells are those of discs and spheres, and a cell by the "
                      "circle of its area would cut an ellipse. Give a specimen of discs or spheres");
+  if (opened.has("grains/half_x_m"))
+    throw InputError(file +
+                     ": the grains are superellipsoids; power cells are those of discs and spheres, and a cell by the "
+                     "sphere of its volume would cut the grain. Give a specimen of discs or spheres");
   if (opened.has("grains/inertia_tensor_kg_m2"))
     throw InputError(file +
                      ": the grains are clumps; power cells are those of discs and spheres, and would cut members that "
