@@ -6,5 +6,5 @@ export default defineConfig({
   base: "./",
   plugins: [viteSingleFile()],
   worker: { format: "iife" },
-  build: { target: "es2022", assetsInlineLimit: 100_000_000 },
+  build: { target: "es2022", assetsInlineLimit: 100_000_000, outDir: "../../build/web", emptyOutDir: false },
 });
