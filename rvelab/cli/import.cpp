@@ -1,6 +1,5 @@
-// rvelab import: specimens from tables, as YADE scripts and spreadsheets write them, and from dumps and data files of
-// LAMMPS.
-// Declared in command.hpp.
+// rvelab import: specimens from tables, as YADE scripts and spreadsheets write them, from dumps and data files of
+// LAMMPS, and from snapshots. Declared in command.hpp.
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/import/snapshot_file.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/measure/proportions.hpp"
 #include "rvelab/pack/plausible.hpp"
@@ -60,12 +60,24 @@ Vector3 edges_in(const std::string& text) {
   return edges;
 }
 
-void run_import(const ImportArguments& arguments) {
+/// A snapshot says all of its specimen itself.
+Specimen from_snapshot(const ImportArguments& arguments) {
+  const std::string& file = arguments.inputs[0];
+  const auto refuse = [&](const std::string& given) {
+    throw InputError(file + " was given with " + given +
+                     "; a snapshot holds its cell, materials and contacts already; leave it out");
+  };
+  if (!arguments.inputs[1].empty()) refuse(arguments.inputs[1]);
+  if (!arguments.material.empty()) refuse("--material");
+  if (!arguments.settings.empty()) refuse("--set");
+  if (arguments.cell) refuse("--cell");
+  if (arguments.timestep) refuse("--timestep");
+  if (arguments.dimension) refuse("--dimension");
+  return io::read_snapshot(file);
+}
+
+Specimen from_tables(const ImportArguments& arguments) {
   const Inputs inputs = sorted(arguments.inputs);
-  expect_folder_of(arguments.output);
-  std::vector<std::string> files{arguments.material};
-  for (const auto& file : arguments.inputs) files.push_back(file);
-  io::expect_output(arguments.output, arguments.force, files);
   io::ImportOptions options;
   options.cell = arguments.cell;
   if (!arguments.material.empty()) options.material_path = arguments.material;
@@ -73,7 +85,16 @@ void run_import(const ImportArguments& arguments) {
   if (arguments.timestep) options.timestep = *arguments.timestep;
   if (arguments.dimension) options.dimension = int(*arguments.dimension);
   options.tell = tell;
-  const Specimen specimen = io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
+  return io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
+}
+
+void run_import(const ImportArguments& arguments) {
+  expect_folder_of(arguments.output);
+  std::vector<std::string> files{arguments.material};
+  for (const auto& file : arguments.inputs) files.push_back(file);
+  io::expect_output(arguments.output, arguments.force, files);
+  const std::string& first = arguments.inputs[0];
+  const Specimen specimen = first.ends_with(io::snapshot_ending) ? from_snapshot(arguments) : from_tables(arguments);
   // Opens it before writing it: a specimen that cannot be opened is refused here.
   const Sizes sizes = sizes_of(Rve(specimen).network());
   io::write_specimen(specimen, arguments.output);
@@ -90,19 +111,20 @@ void run_import(const ImportArguments& arguments) {
   add_proportions(listing, sizes);
   listing.print(arguments.json);
   tell_of_sizes(sizes);
-  tell_of_units(inputs.particles, pack::unusual_in(specimen));
+  tell_of_units(first, pack::unusual_in(specimen));
 }
 
 }  // namespace
 
 void add_import(CLI::App& app) {
   CLI::App& command =
-      *app.add_subcommand("import", "Make a specimen from tables, or from a dump or data file of LAMMPS");
+      *app.add_subcommand("import", "Make a specimen from tables, a dump or data file of LAMMPS, or a snapshot");
   const auto arguments = std::make_shared<ImportArguments>();
   command
       .add_option("PARTICLES.csv", arguments->inputs[0],
                   "columns [id,]x,y[,z] and r, radius or diameter, for ellipses a,b,angle; YADE's export.text; or a\n"
-                  "text dump or data file (atom_style sphere) of LAMMPS in SI units; packed by gzip or not")
+                  "text dump or data file (atom_style sphere) of LAMMPS in SI units; packed by gzip or not; or alone\n"
+                  "S.rvesnap, the state that the laboratory in the browser saved")
       ->required();
   command.add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
   command.add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");
@@ -131,7 +153,8 @@ void add_import(CLI::App& app) {
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
       "  rvelab import relaxed.dump.gz --timestep 20000 --material sand.toml -o relaxed.h5\n"
       "  rvelab import sphere.data --material sand.toml -o sphere.h5\n"
-      "  rvelab import packing.txt --cell 0.01,0.01,0.02 --material sand.toml -o packing.h5   (of YADE's export.text)");
+      "  rvelab import packing.txt --cell 0.01,0.01,0.02 --material sand.toml -o packing.h5   (of YADE's export.text)\n"
+      "  rvelab import sheared.rvesnap -o sheared.h5   (of the laboratory in the browser)");
   command.callback([arguments] { run_import(*arguments); });
 }
 

@@ -105,10 +105,10 @@ double largest_shear_modulus(const protocol::Protocol& protocol, const records::
 /// The values by their names; what is not named is NaN.
 std::vector<double> in_order(const std::vector<std::pair<const char*, double>>& named) {
   std::vector<double> values(measures().size(), nan);
-  for (const auto& [name, value] : named) {
-    const auto place =
-        std::find_if(measures().begin(), measures().end(), [&](const Measure& each) { return each.name == name; });
-    values.at(static_cast<std::size_t>(place - measures().begin())) = value;
+  for (const auto& given : named) {
+    const auto place = std::find_if(measures().begin(), measures().end(),
+                                    [&](const Measure& each) { return each.name == given.first; });
+    values.at(static_cast<std::size_t>(place - measures().begin())) = given.second;
   }
   return values;
 }

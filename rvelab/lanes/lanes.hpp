@@ -10,6 +10,8 @@
 #include <cstring>
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace rvelab {
@@ -48,6 +50,8 @@ inline __attribute__((always_inline)) bool any_of(Mask held) {
 #endif
 #if defined(__SSE2__)
   if constexpr (sizeof(Mask) == 16) return _mm_movemask_pd((__m128d)held) != 0;
+#elif defined(__wasm_simd128__)
+  if constexpr (sizeof(Mask) == 16) return wasm_v128_any_true((v128_t)held);
 #endif
   std::int64_t lanes[sizeof(Mask) / sizeof(std::int64_t)], any = 0;
   std::memcpy(lanes, &held, sizeof(Mask));
@@ -59,6 +63,8 @@ inline __attribute__((always_inline)) double square_root(double v) { return __bu
 inline __attribute__((always_inline)) V2 square_root(V2 v) {
 #if defined(__SSE2__)
   return (V2)_mm_sqrt_pd((__m128d)v);
+#elif defined(__wasm_simd128__)
+  return (V2)wasm_f64x2_sqrt((v128_t)v);
 #else
   return V2{__builtin_sqrt(v[0]), __builtin_sqrt(v[1])};
 #endif

@@ -58,17 +58,19 @@ struct Listed<std::vector<Value>> {
 
 /// How one numeric value lies in bytes: the scalar's type, and the extents of one value, outermost first. `in_order`:
 /// the value in memory is its scalars in that order and nothing else, so that a list of them can be copied whole.
+/// A long has 64 bits in a file, whatever it has in memory (32 in WebAssembly).
 template <class Value>
 struct Layout {
   static_assert(std::is_arithmetic_v<Value>);
-  using Integer = std::conditional_t<sizeof(Value) == 4, std::int32_t,
+  static constexpr bool is_long = std::is_same_v<Value, long> || std::is_same_v<Value, unsigned long>;
+  using Integer = std::conditional_t<sizeof(Value) == 4 && !is_long, std::int32_t,
                                      std::conditional_t<std::is_signed_v<Value>, std::int64_t, std::uint64_t>>;
   using Scalar = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t,
                                     std::conditional_t<std::is_floating_point_v<Value>, double, Integer>>;
-  static_assert(sizeof(Scalar) == sizeof(Value));
+  static_assert(sizeof(Scalar) == sizeof(Value) || is_long);
   static constexpr std::array<std::uint64_t, 0> extents{};
   static constexpr std::size_t size = 1;
-  static constexpr bool in_order = !std::is_same_v<Value, bool>;
+  static constexpr bool in_order = !std::is_same_v<Value, bool> && sizeof(Scalar) == sizeof(Value);
   static void put(const Value& value, Scalar* row) { row[0] = static_cast<Scalar>(value); }
   static void get(const Scalar* row, Value& value) { value = static_cast<Value>(row[0]); }
 };

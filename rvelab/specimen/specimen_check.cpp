@@ -475,7 +475,7 @@ class Relations {
   template <class Law>
   void check_interaction(const Interaction<Law>& item, std::size_t k) const {
     double columns[interaction_columns<Law>()];
-    put_columns(item, columns);
+    put_columns<Law>(item, columns);
     const auto column = [&](int number) { return columns[number]; };
     each_field<Law>(item, [&](const InteractionField& field, const auto& value) {
       if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {

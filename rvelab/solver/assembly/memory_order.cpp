@@ -31,8 +31,8 @@ void turn_round(Contact& c, Shape shape) {
   if (dimension_of(shape) == 3) c.tangential_force = -c.tangential_force;
 }
 
-template <class Law>
-void turn_round(Interaction<Law>& item, Shape shape) {
+template <class Law, int... n>
+void turn_round(Interaction<Law, std::integer_sequence<int, n...>>& item, Shape shape) {
   rvelab::turn_round<Law>(item, dimension_of(shape));
 }
 

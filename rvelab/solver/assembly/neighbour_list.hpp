@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
@@ -18,7 +19,9 @@ struct ListedPair {
   std::int32_t i, j;
   Image image;
   friend bool operator==(const ListedPair&, const ListedPair&) = default;
-  friend auto operator<=>(const ListedPair&, const ListedPair&) = default;
+  friend bool operator<(const ListedPair& a, const ListedPair& b) {
+    return std::tie(a.i, a.j, a.image) < std::tie(b.i, b.j, b.image);
+  }
 };
 
 /// All pairs with |branch| < r_i + r_j + skin, ordered by (i, j, image).

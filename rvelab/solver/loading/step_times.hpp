@@ -16,6 +16,13 @@ struct StepTimes {
   std::atomic<double> calls = 0;   ///< apply, attempt and relax from their begin to their end
 };
 
+/// Adds to a sum of several threads; an addition of its own, since not every library has that of double.
+inline void add_to(std::atomic<double>& sum, double more) {
+  double before = sum.load();
+  while (!sum.compare_exchange_weak(before, before + more)) {
+  }
+}
+
 /// The clock of a row of sub-steps. Every sixteenth is measured and stands for the others, so that a sub-step of a
 /// small RVE, of some microseconds, is not made slower by the clock; lists are measured each.
 class StepClock {
@@ -29,9 +36,9 @@ class StepClock {
     if (times_ == nullptr) return;
     const double sampled = grains_ + pairs_ + rest_;
     const double each = sampled > 0 ? (since(begin_) - list_) / sampled : 0;
-    times_->grains += grains_ * each;
-    times_->pairs += pairs_ * each;
-    times_->list += list_;
+    add_to(times_->grains, grains_ * each);
+    add_to(times_->pairs, pairs_ * each);
+    add_to(times_->list, list_);
   }
 
   bool samples(long number) const { return times_ != nullptr && number % 16 == 0; }
@@ -79,7 +86,7 @@ class CallClock {
   CallClock& operator=(const CallClock&) = delete;
   ~CallClock() {
     if (times_ != nullptr)
-      times_->calls += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+      add_to(times_->calls, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count());
   }
 
  private:

@@ -50,7 +50,8 @@ TypicalContact typical_contact(const Model& model) {
 void set_typical_answers(Model& model) {
   model.slip_frequency_ratio = model.rolling_constraint_factor = 1;
   const PairParameters one = typical_pair(model).first;
-  const auto [k, radius] = typical_contact(model);
+  const ContactStiffness k = typical_contact(model).stiffness;
+  const double radius = typical_contact(model).radius;
   const double overlap = 1e-3 * radius;
   model.alike_contacts = std::all_of(model.materials.begin(), model.materials.end(), [&](const Material& m) {
     const double other = stiffness_of(model, pair_of(model, largest_grain(model), m), overlap).normal;

@@ -1,0 +1,18 @@
+# The laboratory as WebAssembly (preset wasm): packing, tests, measures and what is calibrated from them, without HDF5,
+# threads and the C interface.
+set(web ${PROJECT_SOURCE_DIR}/tools/web/native)
+room_sources(laboratory_sources pack protocol calibrate ensemble)
+add_library(rvelab_laboratory STATIC ${laboratory_sources})
+target_link_libraries(rvelab_laboratory PUBLIC rvelab_keys)
+
+# Which bits a test ends with, for node (tools/web/check-bits).
+add_executable(rvelab-end-state ${web}/end_state.cpp)
+target_link_libraries(rvelab-end-state PRIVATE rvelab_laboratory)
+target_link_options(rvelab-end-state PRIVATE -sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=64MB -sEXIT_RUNTIME=1
+                    -sDISABLE_EXCEPTION_CATCHING=0)
+
+# The laboratory of the page, its WebAssembly inside the module, so that a page opened from a file finds it.
+add_executable(laboratory ${web}/laboratory.cpp)
+target_link_libraries(laboratory PRIVATE rvelab_laboratory)
+target_link_options(laboratory PRIVATE --bind -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=64MB -sMODULARIZE=1 -sEXPORT_ES6=1
+                    -sSINGLE_FILE=1 -sENVIRONMENT=web,worker -sDISABLE_EXCEPTION_CATCHING=0)

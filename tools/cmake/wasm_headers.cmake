@@ -1,0 +1,16 @@
+# Headers of this machine that a WebAssembly build may take: beside them lie those of its C library, so each of the two is
+# reached by a folder that holds it alone.
+add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-include${PROJECT_SOURCE_DIR}/tools/web/native/missing.hpp>)
+set(wasm_headers ${PROJECT_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${wasm_headers})
+foreach(name toml++ nlohmann)
+  find_path(found_${name} NAMES ${name} PATHS /usr/include /usr/local/include REQUIRED NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
+  file(CREATE_LINK ${found_${name}}/${name} ${wasm_headers}/${name} SYMBOLIC)
+endforeach()
+add_library(tomlplusplus_headers INTERFACE)
+target_include_directories(tomlplusplus_headers SYSTEM INTERFACE ${wasm_headers})
+target_compile_definitions(tomlplusplus_headers INTERFACE TOML_HEADER_ONLY=1)
+add_library(tomlplusplus::tomlplusplus ALIAS tomlplusplus_headers)
+add_library(nlohmann_headers INTERFACE)
+target_include_directories(nlohmann_headers SYSTEM INTERFACE ${wasm_headers})
+add_library(nlohmann_json::nlohmann_json ALIAS nlohmann_headers)

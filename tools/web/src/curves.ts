@@ -1,0 +1,93 @@
+/** Curves as they are drawn, with uPlot: one row of points for each test. */
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { column } from "./messages";
+import type { TestKind } from "./setup";
+import { words } from "./words";
+
+export interface Curve {
+  name: string;
+  dashed: boolean;
+  rows: Float64Array[];
+}
+
+/** Of colour-blind safe colours (Okabe and Ito). */
+export const colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6bb1", "#999933"];
+
+interface Axes {
+  x: string;
+  y: string;
+  of: (row: Float64Array) => [number, number];
+}
+
+function axesOf(test: TestKind): Axes {
+  const { strain, shear, q, p, volume } = words.axes;
+  if (test === "isotropic")
+    return { x: p, y: volume, of: (row) => [row[column.p] / 1e3, 100 * row[column.volume]] };
+  if (test === "shear") return { x: shear, y: q, of: (row) => [100 * row[column.strain], row[column.q] / 1e3] };
+  return { x: strain, y: q, of: (row) => [100 * row[column.strain], row[column.q] / 1e3] };
+}
+
+export class CurveView {
+  private plot: uPlot | null = null;
+  private wanted = false;
+  private curves: Curve[] = [];
+  private test: TestKind = "biaxial";
+
+  constructor(private readonly place: HTMLElement) {
+    new ResizeObserver(() => this.plot?.setSize(this.size())).observe(place);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+  }
+
+  show(test: TestKind, curves: Curve[]) {
+    this.test = test;
+    this.curves = curves;
+    if (this.wanted) return;
+    this.wanted = true;
+    requestAnimationFrame(() => {
+      this.wanted = false;
+      this.draw();
+    });
+  }
+
+  private size() {
+    return { width: Math.max(200, this.place.clientWidth), height: Math.max(200, this.place.clientHeight) };
+  }
+
+  private draw() {
+    const axes = axesOf(this.test);
+    // Of the last stage of the test; what came before brought the specimen to its pressure.
+    const points = this.curves.map((curve) => {
+      const last = curve.rows.length > 0 ? Math.max(1, curve.rows[curve.rows.length - 1][column.stage]) : 1;
+      const sorted = curve.rows.filter((row) => row[column.stage] === last).map(axes.of);
+      const [xs, ys] = [sorted.map(([x]) => x), sorted.map(([, y]) => y)];
+      return [xs, ys] as [number[], number[]];
+    });
+    const joined = points.length > 0 ? uPlot.join(points.map((each) => each as unknown as uPlot.AlignedData)) : [[]];
+    const ink = getComputedStyle(this.place).getPropertyValue("color");
+    const grid = getComputedStyle(this.place).getPropertyValue("--line");
+    const axis = (label: string): uPlot.Axis => ({ label, stroke: ink, grid: { stroke: grid }, ticks: { stroke: grid } });
+    this.plot?.destroy();
+    this.plot = new uPlot(
+      {
+        ...this.size(),
+        scales: { x: { time: false } },
+        legend: { show: false },
+        axes: [axis(axes.x), axis(axes.y)],
+        series: [
+          {},
+          ...this.curves.map((curve, k) => ({
+            label: curve.name,
+            stroke: colours[k % colours.length],
+            width: 2,
+            dash: curve.dashed ? [6, 4] : undefined,
+            spanGaps: true,
+            points: { show: false },
+          })),
+        ],
+      },
+      joined as uPlot.AlignedData,
+      this.place,
+    );
+  }
+}

@@ -1,0 +1,242 @@
+/** The page: a form, workers that pack and test, and what is drawn from their answers. */
+import "./style.css";
+import { Client, Stopped } from "./client";
+import { colours, CurveView, type Curve } from "./curves";
+import { csvOf, give } from "./files";
+import { formOf, SetUpForm } from "./form";
+import { GrainView } from "./grains";
+import type { Packed, Picture, Strength, Tested } from "./messages";
+import { drawCircles, type Circle } from "./mohr";
+import { drawEnvelope, ProbePad } from "./probe";
+import { fragmentOf, fromFragment, mistakes, protocolOf, recipeOf, usual, type SetUp } from "./setup";
+import { words } from "./words";
+
+const f = words.fields;
+document.title = words.title;
+document.querySelector("#page")!.innerHTML = `
+  <header><h1>${words.title}</h1><p>${words.intro}</p></header>
+  <main>${formOf()}
+    <section><h2>${words.grainsTitle}</h2><canvas id="grains" role="img" aria-label="${words.grainsNone}"></canvas>
+      <p class="soft" id="state">${words.grainsNone}</p><small>${words.grainsText}</small></section>
+    <section><h2>${words.curve}</h2><div class="curve" id="curve"></div><ul class="key" id="key"></ul></section>
+    <section><h2>${words.mohr}</h2><div id="mohr">${words.mohrNone}</div><p class="strength" id="strength"></p><small id="scatter"></small></section>
+    <section id="whatif"><h2>${words.whatIf}</h2><p class="soft">${words.whatIfText}</p>
+      <label>${f.from} <output id="fromstrain"></output><input id="from" type="range" min="0" max="0" value="0" disabled></label>
+      <label>${f.whatIf} <output id="angle">10</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
+      <button id="fork" type="button" disabled>${words.whatIfRun}</button></section>
+    <section><h2>${words.probe}</h2><p class="soft">${words.probeText}</p>
+      <div class="pads"><div class="pad" id="pad" tabindex="0" role="application"></div><div class="envelope" id="envelope"></div></div>
+      <p id="answer" role="status"></p><button id="envelopes" type="button" disabled>${words.envelope}</button>
+      <small>${words.envelopeText}</small></section>
+    <section><h2>${words.export}</h2><div class="buttons">${Object.entries(words.files)
+      .map(([key, name]) => `<button type="button" data-file="${key}" ${key === "link" ? "" : "disabled"}>${name}</button>`)
+      .join("")}</div><p class="soft" id="told" role="status"></p><small>${words.specimenText}</small></section>
+    <section><h2>${words.teach}</h2><dl>${words.lessons.map(([name, text]) => `<dt>${name}</dt><dd>${text}</dd>`).join("")}</dl></section>
+  </main>`;
+
+const part = <E extends Element = HTMLElement>(id: string) => document.querySelector<E>(`#${id}`)!;
+const status = (text: string) => void (part("status").textContent = text);
+const wrong = (sentences: string[]) => {
+  const list = document.createElement("ul");
+  list.append(...sentences.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+  part("mistakes").replaceChildren(...(sentences.length > 0 ? [words.wrong, list] : []));
+};
+const grains = new GrainView(part<HTMLCanvasElement>("grains"));
+const curveView = new CurveView(part("curve"));
+const pad = new ProbePad(part("pad"));
+const form = new SetUpForm(document.querySelector("form")!, () => wrong([]));
+
+/** What the page shows of its tests. */
+interface Finished {
+  circle: Circle;
+  pressure: number;
+  seed: number;
+}
+let setUp: SetUp = usual();
+let curves: Curve[] = [];
+let finished: Finished[] = [];
+let resolved = { recipe: "", protocol: "" };
+/** The laboratory whose grains are shown; it stays for what comes after a test. */
+let shown: Client | null = null;
+let others: Client[] = [];
+let running = false;
+
+function show(picture: Picture) {
+  grains.show(picture);
+  const text = words.grainsLabel(picture.grains.length / 6, picture.void_ratio, picture.coordination);
+  part("state").textContent = text;
+  part("grains").setAttribute("aria-label", text);
+}
+
+function showCurves() {
+  curveView.show(setUp.test, curves);
+  part("key").innerHTML = curves
+    .map((curve, k) => `<li><i class="${curve.dashed ? "dashed" : ""}" style="color:${colours[k % colours.length]}"></i>${curve.name}</li>`)
+    .join("");
+}
+
+function allow(yes: boolean) {
+  running = !yes;
+  part<HTMLButtonElement>("stop").disabled = yes;
+  document.querySelector<HTMLButtonElement>("form .first")!.disabled = !yes;
+  const after = yes && shown !== null;
+  for (const id of ["from", "friction", "fork", "envelopes"]) part<HTMLInputElement>(id).disabled = !after;
+  for (const button of document.querySelectorAll<HTMLButtonElement>("[data-file]"))
+    if (button.dataset.file !== "link") button.disabled = !after;
+  pad.use(after ? shown : null);
+}
+
+async function showStrength() {
+  if (shown === null || finished.length === 0 || setUp.test === "isotropic") return;
+  const circles = finished.map(({ circle }) => circle);
+  const { friction_angle, standard_error, Nq } = await shown.ask<Strength>({
+    do: "strength",
+    circles: circles.flatMap(({ s, t }) => [s, t]),
+  });
+  drawCircles(part("mohr"), circles, friction_angle);
+  part("strength").textContent = words.strength(friction_angle, standard_error, Nq);
+  part("scatter").textContent = circles.length > 1 ? words.scatter(circles.length) : words.oneTest;
+}
+
+/** One test from its packing to its end, in a laboratory of its own. */
+async function oneTest(client: Client, seed: number, pressure: number, watched: boolean) {
+  const curve: Curve = { name: `${pressure} kPa${setUp.seeds > 1 ? `, seed ${seed}` : ""}`, dashed: false, rows: [] };
+  const packed = await client.ask<Packed>({ do: "pack", recipe: recipeOf(setUp, seed, pressure) }, (note) => {
+    if (watched && "draw" in note) status(words.packing(note.draw, note.voidRatio));
+  });
+  if (watched) show(await client.ask<Picture>({ do: "picture" }));
+  curves.push(curve);
+  const tested = await client.ask<Tested>({ do: "run", protocol: protocolOf(setUp, pressure), forks: 10 }, (note) => {
+    if ("picture" in note && watched) show(note.picture);
+    if (!("rows" in note)) return;
+    curve.rows.push(...note.rows);
+    showCurves();
+  });
+  if (watched) resolved = { recipe: packed.recipe, protocol: tested.protocol ?? "" };
+  finished.push({ circle: { s: tested.peak_s / 1e3, t: tested.peak_t / 1e3 }, pressure, seed });
+}
+
+async function runAll() {
+  const found = mistakes((setUp = form.read()));
+  wrong(found);
+  if (found.length > 0) return;
+  endAll();
+  [curves, finished] = [[], []];
+  drawCircles(part("mohr"), [], 0);
+  part("strength").textContent = part("scatter").textContent = "";
+  history.replaceState(null, "", fragmentOf(setUp));
+  const jobs = setUp.pressures.flatMap((pressure) =>
+    Array.from({ length: setUp.seeds }, (_, k) => ({ pressure, seed: k + 1 })),
+  );
+  const all = jobs.length;
+  const begin = performance.now();
+  shown = new Client();
+  others = Array.from({ length: Math.min(all - 1, Math.max(1, (navigator.hardwareConcurrency || 2) - 1), 7) }, () => new Client());
+  allow(false);
+  const work = async (client: Client) => {
+    for (let job = jobs.shift(); job; job = jobs.shift()) {
+      await oneTest(client, job.seed, job.pressure, client === shown);
+      status(words.testing(finished.length, all));
+      await showStrength();
+    }
+  };
+  try {
+    await Promise.all([shown, ...others].map(work));
+    status(words.done(all, (performance.now() - begin) / 1e3));
+    await afterTest();
+  } catch (error) {
+    if (!(error instanceof Stopped)) wrong([(error as Error).message]);
+    status(words.stopped);
+    endAll();
+  }
+  for (const client of others) client.end();
+  others = [];
+  allow(true);
+}
+
+/** States to go on from, and the picture of the end. */
+async function afterTest() {
+  if (shown === null) return;
+  show(await shown.ask<Picture>({ do: "picture" }));
+  const { kept } = await shown.ask<{ kept: Float64Array }>({ do: "kept" });
+  const slider = part<HTMLInputElement>("from");
+  slider.max = String(Math.max(0, kept.length - 1));
+  slider.value = String(Math.floor((kept.length - 1) / 3));
+  const tell = () => void (part("fromstrain").textContent = `${(100 * (kept[Number(slider.value)] ?? 0)).toFixed(2)} %`);
+  slider.oninput = tell;
+  tell();
+}
+
+async function goOn() {
+  if (shown === null || running) return;
+  const angle = Number(part<HTMLInputElement>("friction").value);
+  const curve: Curve = { name: `${angle}° from ${part("fromstrain").textContent}`, dashed: true, rows: [] };
+  curves.push(curve);
+  allow(false);
+  try {
+    const from = Number(part<HTMLInputElement>("from").value);
+    await shown.ask<Tested>({ do: "fork", from, friction: Math.tan((angle * Math.PI) / 180) }, (note) => {
+      if ("picture" in note) show(note.picture);
+      if (!("rows" in note)) return;
+      curve.rows.push(...note.rows);
+      showCurves();
+    });
+    show(await shown.ask<Picture>({ do: "picture" }));
+  } catch (error) {
+    if (!(error instanceof Stopped)) wrong([(error as Error).message]);
+  }
+  allow(true);
+}
+
+function endAll() {
+  for (const client of [shown, ...others]) client?.end();
+  [shown, others] = [null, []];
+}
+
+async function giveFile(kind: string) {
+  if (kind === "link") {
+    const address = location.href.replace(/#.*/, "") + fragmentOf(form.read());
+    history.replaceState(null, "", fragmentOf(form.read()));
+    await navigator.clipboard?.writeText(address).catch(() => undefined);
+    part("told").textContent = words.copied;
+  }
+  if (kind === "test") give("test.toml", resolved.protocol, "application/toml");
+  if (kind === "soil") give("soil.toml", resolved.recipe, "application/toml");
+  if (kind === "curve") give("curves.csv", csvOf(curves), "text/csv");
+  if (kind === "picture") part<HTMLCanvasElement>("grains").toBlob((blob) => blob && give("grains.png", blob, "image/png"));
+  if (kind === "specimen" && shown !== null) {
+    const { bytes } = await shown.ask<{ bytes: Uint8Array<ArrayBuffer> }>({ do: "save" });
+    give("specimen.rvesnap", bytes, "application/octet-stream");
+  }
+}
+
+document.querySelector("form")!.addEventListener("submit", (event) => {
+  event.preventDefault();
+  void runAll();
+});
+part("stop").addEventListener("click", endAll);
+part("fork").addEventListener("click", () => void goOn());
+part<HTMLInputElement>("friction").addEventListener("input", (event) => {
+  part("angle").textContent = (event.target as HTMLInputElement).value;
+});
+part("envelopes").addEventListener("click", async () => {
+  if (shown === null) return;
+  try {
+    const { changes } = await shown.ask<{ changes: Float64Array }>({ do: "envelope", length: 1e-4, count: 24 });
+    drawEnvelope(part("envelope"), changes);
+  } catch (error) {
+    wrong([(error as Error).message]);
+  }
+});
+for (const button of document.querySelectorAll<HTMLButtonElement>("[data-file]"))
+  button.addEventListener("click", () => void giveFile(button.dataset.file!));
+pad.onAnswer = (xx, yy, ms) => {
+  part("answer").textContent = words.probeAnswer(xx, yy, ms);
+  void shown?.ask<Picture>({ do: "picture" }).then(show, () => undefined);
+};
+pad.onError = (error) => wrong([(error as Error).message]);
+
+const linked = location.hash.length > 1 ? fromFragment(location.hash) : null;
+if (location.hash.length > 1 && linked === null) wrong([words.oldLink]);
+form.fill(linked ?? usual());
+showCurves();
