@@ -10,7 +10,8 @@ namespace rvelab {
 struct Ellipse {
   static constexpr const char* name = "ellipse";
   static constexpr int dimension = 2;
-  static constexpr bool round = false, rigid = false, pairs_hold_radii = false, fills_rows = true, has_hertz_curvature = true;
+  static constexpr bool round = false, rigid = false, pairs_hold_radii = false, fills_rows = true,
+                        has_hertz_curvature = true;
 
   static constexpr int row_length = 12, released_mass = 7, released_inverse_inertia = 11;
 

@@ -295,7 +295,8 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
   State& state = prepared_for_change(*state_);
   if (state.model().bodies)
     throw InputError(
-        "set_velocities: the grains are bodies (clumps, superellipsoids); set the velocities and spins of the bodies of a specimen "
+        "set_velocities: the grains are bodies (clumps, superellipsoids); set the velocities and spins of the bodies "
+        "of a specimen "
         "instead (bodies/velocity, bodies/spin)");
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +

@@ -33,10 +33,9 @@ constexpr auto fields_of_shape() {
   } else {
     constexpr auto& columns = By::template columns<List>;
     return []<std::size_t... k>(std::index_sequence<k...>) {
-      return std::tuple{
-          Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, columns[k].unit,
-                                      By::rigid ? Rows::per_grain_or_left_out : Rows::per_grain_or_none}
-              .within(positive_number)...};
+      return std::tuple{Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, columns[k].unit,
+                                                    By::rigid ? Rows::per_grain_or_left_out : Rows::per_grain_or_none}
+                            .within(positive_number)...};
     }
     (std::make_index_sequence<std::size(columns)>());
   }

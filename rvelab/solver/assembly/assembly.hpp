@@ -34,11 +34,11 @@ struct Model {
   SharedArray<double> turn_first, turn_second;  ///< not round: TurnValues for the grain loop, padded to lanes
   /// Superellipsoids: what does not change in their rows, nine each (columns 3 and 16 to 23).
   SharedArray<double> form;
-  double mean_radius = 0;                       ///< m; of bodies where there are some
-  double largest_reach = 0;                     ///< m, of the circles around the grains
-  double largest_skin = 0;                      ///< m
-  double min_height = 0;                        ///< m
-  Kernels kernels;                              ///< as the specimen states them, at a rate
+  double mean_radius = 0;        ///< m; of bodies where there are some
+  double largest_reach = 0;      ///< m, of the circles around the grains
+  double largest_skin = 0;       ///< m
+  double min_height = 0;         ///< m
+  Kernels kernels;               ///< as the specimen states them, at a rate
   Kernels quasi_static_kernels;  ///< without the dashpot, whose time a sub-step of quasi-static loading is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
@@ -120,7 +120,7 @@ struct PairTable {
   Buffer image_number[3];
   Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
-  Buffer radius_i, radius_j;                    ///< where the kernels read them by pairs
+  Buffer radius_i, radius_j;  ///< where the kernels read them by pairs
   Buffer solid;  ///< superellipsoids (kernels/configuration.hpp): directions to begin with, no state, and torques
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;

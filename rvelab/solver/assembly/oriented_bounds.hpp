@@ -12,8 +12,8 @@
 // An ellipse turned by theta: |h(p - theta) - h(p)| = (a^2 - b^2) |sin(2p - theta) sin theta|/(h(p - theta) + h(p)),
 // and from h(q) >= |a cos(q) sin(q') + b sin(q) cos(q')| for any q' the sum of the two h is not below
 // (a + b) |sin(2p - theta)|. So the outline moves by (a - b) |sin theta| at most. Of other shapes l stands for a - b
-// (Extent::turning), the seventh of a row. In space a turn by theta moves h by l theta at most, since dh/dtheta = |x x n|
-// of the support point x.
+// (Extent::turning), the seventh of a row. In space a turn by theta moves h by l theta at most, since dh/dtheta = |x x
+// n| of the support point x.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -54,8 +54,6 @@ inline double solid_moved_by_turn(const Vector3& listed, const double* row) {
   return row[23] * (2 * s * (1 + 0.571 * s * s));
 }
 /// As a list notes it: of the two quaternions of a turn the one with w >= 0.
-inline Vector3 noted_turn(const double* row) {
-  return (row[12] < 0 ? -1 : 1) * Vector3(row[13], row[14], row[15]);
-}
+inline Vector3 noted_turn(const double* row) { return (row[12] < 0 ? -1 : 1) * Vector3(row[13], row[14], row[15]); }
 
 }  // namespace rvelab

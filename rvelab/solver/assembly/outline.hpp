@@ -16,7 +16,8 @@ template <Shape shape>
 struct Outline {
   using Place = PlaceOf<shape>;
   using Own = typename Description<shape>::template Columns<One>;
-  /// In the plane. Puts into a row what follows from the lengths and the axis that stands there (kernels/configuration.hpp).
+  /// In the plane. Puts into a row what follows from the lengths and the axis that stands there
+  /// (kernels/configuration.hpp).
   static void complete_row(const Own& own, double* row);
   /// From the branch (m) and the rows of the two grains: in the plane what the step kernels find, bit for bit; in space
   /// an overlap within rounding of theirs.
@@ -27,14 +28,14 @@ struct Outline {
   static bool farther_apart_than(double skin, const Branch& branch, const double* row_i, const double* row_j);
 };
 
-#define RVELAB_DECLARE(shape, description)                                                              \
-  template <>                                                                                           \
-  void Outline<Shape::shape>::complete_row(const Own&, double*);                                        \
-  template <>                                                                                           \
-  PlaceOf<Shape::shape> Outline<Shape::shape>::place(const Branch&, const double*, const double*);      \
-  template <>                                                                                           \
+#define RVELAB_DECLARE(shape, description)                                                                \
+  template <>                                                                                             \
+  void Outline<Shape::shape>::complete_row(const Own&, double*);                                          \
+  template <>                                                                                             \
+  PlaceOf<Shape::shape> Outline<Shape::shape>::place(const Branch&, const double*, const double*);        \
+  template <>                                                                                             \
   PlaceOf<Shape::shape> Outline<Shape::shape>::nearest_place(const Place&, const double*, const double*); \
-  template <>                                                                                           \
+  template <>                                                                                             \
   bool Outline<Shape::shape>::farther_apart_than(double, const Branch&, const double*, const double*);
 RVELAB_SHAPES(RVELAB_DECLARE)
 #undef RVELAB_DECLARE

@@ -75,10 +75,11 @@ struct PairArrays {
   double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
   double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< where the kernels read them by pairs
-  double* force = nullptr;                ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0},
-                                          ///< superellipsoids {fx, fy, fz, 0, T_j, 0}
+  double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0},
+                            ///< superellipsoids {fx, fy, fz, 0, T_j, 0}
   const std::uint8_t* shifted = nullptr;  ///< by eight pairs: whether one is with an image, else all shifts are 0
-  double* solid = nullptr;  ///< superellipsoids: row of eight a pair {a direction to begin with, 0, torque on i (N m), 0}
+  double* solid =
+      nullptr;  ///< superellipsoids: row of eight a pair {a direction to begin with, 0, torque on i (N m), 0}
 };
 
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
@@ -121,8 +122,8 @@ using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const Pai
                              StepSums*);
 
 /// Doubles that a kernel of places writes for a pair: n_x, n_y, and in m overlap (< 0: apart by that or more), h_i,
-/// h_j, torques of a force of 1 along n on i and on j (kernels/ellipses.hpp), 0; in space n, overlap, contact point from the
-/// centre of i, 0 (kernels/superellipsoids.hpp).
+/// h_j, torques of a force of 1 along n on i and on j (kernels/ellipses.hpp), 0; in space n, overlap, contact point
+/// from the centre of i, 0 (kernels/superellipsoids.hpp).
 constexpr int place_row_length = 8;
 /// Of the pairs [begin, end), multiples of eight; pair p goes to places + 8 p. Reads rows, images and, of the
 /// constants, the lattice.
