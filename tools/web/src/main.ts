@@ -21,8 +21,8 @@ document.querySelector("#page")!.innerHTML = `
     <section><h2>${words.curve}</h2><div class="curve" id="curve"></div><ul class="key" id="key"></ul></section>
     <section><h2>${words.mohr}</h2><div id="mohr">${words.mohrNone}</div><p class="strength" id="strength"></p><small id="scatter"></small></section>
     <section id="whatif"><h2>${words.whatIf}</h2><p class="soft">${words.whatIfText}</p>
-      <label>${f.from} <output id="fromstrain"></output><input id="from" type="range" min="0" max="0" value="0" disabled></label>
-      <label>${f.whatIf} <output id="angle">10</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
+      <label for="from">${f.from} <output id="fromstrain"></output><input id="from" type="range" min="0" max="0" value="0" disabled></label>
+      <label for="friction">${f.whatIf} <output id="angle">10</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
       <button id="fork" type="button" disabled>${words.whatIfRun}</button></section>
     <section><h2>${words.probe}</h2><p class="soft">${words.probeText}</p>
       <div class="pads"><div class="pad" id="pad" tabindex="0" role="application"></div><div class="envelope" id="envelope"></div></div>
@@ -86,10 +86,11 @@ function allow(yes: boolean) {
   pad.use(after ? shown : null);
 }
 
-async function showStrength() {
-  if (shown === null || finished.length === 0 || setUp.test === "isotropic") return;
+/** Asked of a laboratory at rest: one that tests would answer only at its end. */
+async function showStrength(client: Client) {
+  if (finished.length === 0 || setUp.test === "isotropic") return;
   const circles = finished.map(({ circle }) => circle);
-  const { friction_angle, standard_error, Nq } = await shown.ask<Strength>({
+  const { friction_angle, standard_error, Nq } = await client.ask<Strength>({
     do: "strength",
     circles: circles.flatMap(({ s, t }) => [s, t]),
   });
@@ -137,7 +138,7 @@ async function runAll() {
     for (let job = jobs.shift(); job; job = jobs.shift()) {
       await oneTest(client, job.seed, job.pressure, client === shown);
       status(words.testing(finished.length, all));
-      await showStrength();
+      await showStrength(client);
     }
   };
   try {
