@@ -1,0 +1,113 @@
+// Five visits as a new user makes them. Each gives what it found in one line and a picture; a claim that does not hold
+// is an error with what was found.
+import { execFileSync } from "node:child_process";
+import { copyFileSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { open } from "./browser.mjs";
+import { choose, fill, free, packAndTest, press, saved, slide, text, words } from "./page.mjs";
+
+function claim(holds, sentence) {
+  if (!holds) throw new Error(sentence);
+}
+
+async function picture(tab, folder, name) {
+  await tab.screenshot({ path: join(folder, `${name}.png`), fullPage: true });
+}
+
+/** The rows of the CSV that the page saves: {column: value}. */
+function rowsOf(csv) {
+  const [head, ...lines] = readFileSync(csv, "utf8").trim().split("\n");
+  const names = head.split(",");
+  return lines.map((line) => Object.fromEntries(line.match(/("[^"]*"|[^,]+)/g).map((value, k) => [names[k], value])));
+}
+
+const angle = /φ = ([\d.]+)°(?: ± ([\d.]+)°)?, N_q = ([\d.]+)/;
+
+/** A sieve curve, three pressures: a friction angle with its error. */
+async function sieveCurve({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.grading, words.gradings.sieve);
+  await fill(tab, words.fields.sieve10, 0.2);
+  await fill(tab, words.fields.sieve50, 0.3);
+  await fill(tab, words.fields.sieve60, 0.33);
+  await fill(tab, words.fields.voidRatio, "");
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.pressures, "50, 100, 200");
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi, error, nq] = await text(tab, angle, 10);
+  await picture(tab, folder, "1_sieve_curve");
+  await tab.close();
+  claim(phi > 10 && phi < 40, `a friction angle of ${phi} degrees of discs`);
+  claim(error !== undefined && Number(error) < 10, `an error of ${error} degrees of three tests`);
+  const expected = Math.exp(Math.PI * Math.tan((phi * Math.PI) / 180)) * Math.tan(Math.PI / 4 + (phi * Math.PI) / 360) ** 2;
+  claim(Math.abs(nq / expected - 1) < 0.02, `N_q ${nq}, of ${phi} degrees it is ${expected.toFixed(1)}`);
+  return `friction angle ${phi} +- ${error} degrees, N_q ${nq}`;
+}
+
+/** The same test gone on from a kept state with grains that hardly rub: it carries less. */
+async function twoFrictions({ browser, address, folder, scratch }) {
+  const { tab } = await open(browser, address);
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  await slide(tab, words.fields.whatIf, 5);
+  await press(tab, words.whatIfRun);
+  await free(tab, words.whatIfRun, 120);
+  await picture(tab, folder, "2_two_frictions");
+  const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
+  await tab.close();
+  const tests = [...new Set(rows.map((row) => row.test))];
+  claim(tests.length === 2, `curves of ${tests.length} tests, wanted the first and what goes on from it`);
+  const [first, other] = tests.map((test) => Number(rows.filter((row) => row.test === test).at(-1).q_Pa));
+  claim(other < 0.8 * first, `q ${other} Pa with 5 degrees between grains, ${first} Pa with 23`);
+  return `q at the end ${(first / 1e3).toFixed(1)} kPa, gone on with 5 degrees ${(other / 1e3).toFixed(1)} kPa`;
+}
+
+/** Loose discs at constant volume lose their mean stress. */
+async function liquefaction({ browser, address, folder, scratch }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.fields.preset, "Loose discs");
+  await choose(tab, words.fields.test, words.tests.undrained);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  await picture(tab, folder, "3_liquefaction");
+  const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
+  await tab.close();
+  const p = rows.filter((row) => row.stage === rows.at(-1).stage).map((row) => Number(row.p_Pa));
+  const least = Math.min(...p);
+  claim(least < 0.8 * p[0], `p falls from ${p[0]} to ${least} Pa only`);
+  return `p from ${(p[0] / 1e3).toFixed(1)} to at least ${(least / 1e3).toFixed(2)} kPa`;
+}
+
+/** What the page saves is what the program reads: the specimen, and a test that goes on from it. */
+async function exported({ browser, address, folder, scratch, program }) {
+  const { tab } = await open(browser, address);
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 2);
+  await packAndTest(tab);
+  await picture(tab, folder, "4_export");
+  const keep = (name) => join(folder, name);
+  copyFileSync(await saved(browser, tab, words.files.specimen, scratch), keep("specimen.rvesnap"));
+  copyFileSync(await saved(browser, tab, words.files.test, scratch), keep("test.toml"));
+  await tab.close();
+  execFileSync(program, ["import", keep("specimen.rvesnap"), "-o", keep("specimen.h5"), "--force"], { stdio: "pipe" });
+  const told = execFileSync(program, ["run", keep("test.toml"), "--specimen", keep("specimen.h5"), "--json"], { encoding: "utf8" });
+  return `the program goes on from specimen.rvesnap: ${JSON.parse(told).records ?? "some"} records`;
+}
+
+/** A wrong number is told with its field, and nothing runs; so is a link that is none. */
+async function wrongInput({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await fill(tab, words.fields.grains, 5);
+  await press(tab, words.run);
+  const told = await text(tab, /Grains: give a number from \d+ to \d+/, 5);
+  await picture(tab, folder, "5_wrong_input");
+  await tab.close();
+  const damaged = await open(browser, `${address}#%7Bdamaged`);
+  await text(damaged.tab, new RegExp(words.oldLink.slice(0, 30)), 5);
+  await damaged.tab.close();
+  return told[0];
+}
+
+export const visits = { "sieve curve": sieveCurve, "two frictions": twoFrictions, liquefaction, export: exported, "wrong input": wrongInput };
