@@ -11,8 +11,9 @@ target_link_libraries(rvelab-end-state PRIVATE rvelab_laboratory)
 target_link_options(rvelab-end-state PRIVATE -sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=64MB -sEXIT_RUNTIME=1
                     -sDISABLE_EXCEPTION_CATCHING=0)
 
-# The laboratory of the page, its WebAssembly inside the module, so that a page opened from a file finds it.
+# The laboratory of the page. tools/web/build packs its WebAssembly into the page, compressed, so that a page opened from
+# a file finds it; optimised for size at linking, since all of it is loaded at first.
 add_executable(laboratory ${web}/laboratory.cpp)
 target_link_libraries(laboratory PRIVATE rvelab_laboratory)
-target_link_options(laboratory PRIVATE --bind -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=64MB -sMODULARIZE=1 -sEXPORT_ES6=1
-                    -sSINGLE_FILE=1 -sENVIRONMENT=web,worker -sDISABLE_EXCEPTION_CATCHING=0)
+target_link_options(laboratory PRIVATE -Os --bind -sALLOW_MEMORY_GROWTH=1 -sINITIAL_MEMORY=64MB -sMODULARIZE=1
+                    -sEXPORT_ES6=1 -sUSE_ES6_IMPORT_META=0 -sENVIRONMENT=web,worker -sDISABLE_EXCEPTION_CATCHING=0)

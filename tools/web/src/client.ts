@@ -1,5 +1,6 @@
 /** A laboratory in its worker, as promises. */
 import LaboratoryWorker from "./worker?worker&inline";
+import { compiled } from "./compiled";
 import type { Call, FromWorker, Note } from "./messages";
 
 interface Waiting {
@@ -22,6 +23,10 @@ export class Client {
       if ("error" in data) call.reject(new Error(data.error));
       else call.resolve(data.answer as never);
     };
+    compiled().then(
+      (module) => this.worker.postMessage({ module }),
+      (error: Error) => this.fail(error),
+    );
     this.worker.onerror = (event) => this.fail(new Error(event.message));
   }
 

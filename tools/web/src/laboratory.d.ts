@@ -11,9 +11,13 @@ declare module "*/laboratory.js" {
     envelope(length: number, count: number): Answer;
   }
   export type Answer = { error?: string } & Record<string, unknown>;
-  interface Module {
+  export interface Module {
     Laboratory: new () => Laboratory;
     strength(circles: number[]): Answer;
   }
-  export default function create(): Promise<Module>;
+  interface Start {
+    /** Called by the module in place of a download; `done` takes what it made. */
+    instantiateWasm(imports: WebAssembly.Imports, done: (instance: WebAssembly.Instance, module: WebAssembly.Module) => void): object;
+  }
+  export default function create(start: Start): Promise<Module>;
 }

@@ -1,11 +1,22 @@
 /** One laboratory in a thread of its own: it carries out calls in turn, and tells records and pictures on the way. */
-import create from "../wasm/laboratory.js";
+import create, { type Laboratory, type Module } from "../wasm/laboratory.js";
 import type { Call, FromWorker, Note, Picture } from "./messages";
 
-const ready = create().then((module) => ({ module, laboratory: new module.Laboratory() }));
+type Started = { module: Module; laboratory: Laboratory };
+let start: (module: WebAssembly.Module) => void;
+const ready = new Promise<WebAssembly.Module>((resolve) => (start = resolve)).then(async (compiled): Promise<Started> => {
+  const module = await create({
+    instantiateWasm: (imports, done) => {
+      void WebAssembly.instantiate(compiled, imports).then((instance) => done(instance, compiled));
+      return {};
+    },
+  });
+  return { module, laboratory: new module.Laboratory() };
+});
 const betweenPictures = 33; // ms
 
-self.onmessage = async (event: MessageEvent<{ id: number; call: Call }>) => {
+self.onmessage = async (event: MessageEvent<{ id: number; call: Call } | { module: WebAssembly.Module }>) => {
+  if ("module" in event.data) return start(event.data.module);
   const { id, call } = event.data;
   const say = (message: FromWorker) => self.postMessage(message);
   const note = (told: Note) => say({ id, note: told });
