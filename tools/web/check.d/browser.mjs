@@ -47,10 +47,10 @@ export async function open(browser, address, size = { width: 1280, height: 900 }
   await tab.setViewport(size);
   await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }]);
   await tab.evaluateOnNewDocument(() => {
-    window.picturesDrawn = 0;
+    window.pictureTimes = [];  // ms
     const clear = WebGL2RenderingContext.prototype.clear;
     WebGL2RenderingContext.prototype.clear = function (mask) {
-      ++window.picturesDrawn;
+      window.pictureTimes.push(performance.now());
       clear.call(this, mask);
     };
   });

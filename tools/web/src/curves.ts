@@ -30,6 +30,7 @@ function axesOf(test: TestKind): Axes {
 
 export class CurveView {
   private plot: uPlot | null = null;
+  private look = "";
   private wanted = false;
   private curves: Curve[] = [];
   private test: TestKind = "biaxial";
@@ -67,6 +68,10 @@ export class CurveView {
     const ink = getComputedStyle(this.place).getPropertyValue("color");
     const grid = getComputedStyle(this.place).getPropertyValue("--line");
     const axis = (label: string): uPlot.Axis => ({ label, stroke: ink, grid: { stroke: grid }, ticks: { stroke: grid } });
+    // The plot is built anew only where more than its points changed: that takes longer than a picture may.
+    const look = JSON.stringify([axes.x, axes.y, ink, grid, this.curves.map(({ name, dashed }) => [name, dashed])]);
+    if (this.plot !== null && look === this.look) return this.plot.setData(joined as uPlot.AlignedData);
+    this.look = look;
     this.plot?.destroy();
     this.plot = new uPlot(
       {
