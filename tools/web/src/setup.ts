@@ -58,6 +58,9 @@ export function recipeOf(setUp: SetUp, seed: number, pressure: number): string {
     setUp.grading === "sieve"
       ? `grading = "d10_d60"\nd10_mm = ${setUp.d10}\nd50_mm = ${setUp.d50}\nd60_mm = ${setUp.d60}`
       : `grading = "uniform"\nsmallest_radius_m = ${setUp.smallest / 2000}\nlargest_radius_m = ${setUp.largest / 2000}`;
+  // Ten grains thick, as the specimens of discs that the presets are from: the force on a grain grows with the slab.
+  const middle = setUp.grading === "sieve" ? setUp.d50 : (setUp.smallest + setUp.largest) / 2;
+  const thickness = (10 * middle) / 1000;
   const voidRatio = setUp.voidRatio.trim() === "" ? "" : `void_ratio = ${Number(setUp.voidRatio)}\n`;
   const rolling = setUp.rolling ? "rolling_stiffness = 1\nrolling_friction = 0.05\n" : "";
   return `[pack]
@@ -65,7 +68,7 @@ name = "${setUp.name}"
 shape = "disc"
 number = ${setUp.grains}
 seed = ${seed}
-thickness_m = 0.1
+thickness_m = ${thickness}
 
 [grains]
 ${grading}
