@@ -125,7 +125,7 @@ Report load_at_rate(State& state, const FrameSplit& whole, double dt) {
     const Matrix3 rate =
         report.substeps == 0 ? Matrix3((whole.stretch - Matrix3::Identity()) / dt) : state.last_step().rate;
     const TimeStep limit = time_step(state, rate, rate_check_interval, dt);
-    const long steps_left = long(std::clamp(steps_in(left * dt, limit.longest), 1.0, 1e15));
+    const long steps_left = long(std::clamp(steps_in(left * dt, limit.longest), 1.0, constants::most_steps_counted));
     expect_substeps(state, report.substeps + steps_left);
     const double step = left * dt / double(steps_left);
     const long steps = steps_left <= limit.interval + limit.interval / 2 ? steps_left : limit.interval;

@@ -13,6 +13,8 @@ constexpr long check_interval = 50;
 /// call of one sub-step makes 2.2 times its instructions (tools/bench/count).
 constexpr long checked_steps = 10;
 constexpr double checked_strain = 1e-4;
+/// Most sub-steps that one increment counts: what a long holds with room (32 bits in WebAssembly).
+constexpr double most_steps_counted = sizeof(long) > 4 ? 1e15 : 1e9;
 /// Increments in one direction are judged together up to this strain: a path cut finely is the same path. One direction
 /// is within acos(0.9) = 26 degrees, in simple shear 50 (a triangular stretch is sqrt 2 times its strain there): a
 /// straight path strays from it by less than a sub-step does.

@@ -92,7 +92,7 @@ class CheckedSteps {
     } else {
       const double count = std::ceil(left * strain_ / strain_per_step - rounded_off),
                    at_least = std::ceil(left * fewest_);
-      steps_left = long(std::clamp(std::max(count, at_least), 1.0, 1e15));
+      steps_left = long(std::clamp(std::max(count, at_least), 1.0, constants::most_steps_counted));
       by_strain_ = count >= at_least;
     }
     const bool hopeless = left * strain_ / step_of_gas > double(o.max_substeps);
