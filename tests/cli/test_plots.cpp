@@ -322,8 +322,8 @@ TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") 
       "standard_deviation": 0.05, "low_95": 0.4, "high_95": 0.6}], "tests": [{"values": {"material.friction": 0.3}}],
       "posterior_sample": {"material.friction": [0.4, 0.45, 0.5, 0.55, 0.6]}, "targets": [
       {"name": "friction_angle_deg", "value": 30, "standard_error": 0.5, "fit": {"mean": 31, "standard_deviation": 1}},
-      {"name": "q_over_p", "value": 0.5, "standard_error": 0, "fit": {"mean": 0.5, "standard_deviation": 0.1}},
-      {"name": "q_over_p", "value": 0.6, "standard_error": 0, "fit": {"mean": 0.6, "standard_deviation": 0.1}}]})");
+      {"name": "q_over_p", "value": 0.5, "standard_error": 0, "of_curve": true, "fit": {"mean": 0.5, "standard_deviation": 0.1}},
+      {"name": "q_over_p", "value": 0.6, "standard_error": 0, "of_curve": true, "fit": {"mean": 0.6, "standard_deviation": 0.1}}]})");
   here.write(
       "fit/curves.csv",
       "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n"
@@ -333,6 +333,11 @@ TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") 
              "0.1,20,0.5,5\n0.5,30,0.5,5\n");
   expect_figure(here, "fit", "fit", "material.friction 0.50 (0.40 to 0.60); 1 tests");
   expect_figure(here, "fit", "sweep", "1 measure against material.friction, 2 points");
+  here.write("fit/predictions.csv",
+             "test,predicted,quantity,abscissa,x,measured,error,mean,standard_deviation,n\n"
+             "A,0,deviator,strain,0.01,5e4,2e3,5.1e4,3e3,8\nA,0,deviator,strain,0.02,6e4,2e3,6.2e4,3e3,8\n"
+             "B,1,strain,axial_stress,1e4,0,2e-3,0,0,8\nB,1,strain,axial_stress,1e5,1e-2,2e-3,1.1e-2,1e-3,8\n");
+  expect_figure(here, "fit", "fit", "material.friction 0.50 (0.40 to 0.60); 1 tests");
   std::filesystem::remove(here / "fit/fit.json");
   expect_refusal(here, "fit", "fit", "fit.json: is not there");
   here.write("fit/fit.json", "{}");

@@ -156,7 +156,7 @@ def groups_of(rows):
     """Numbers of the rows of each curve and quantity, in their order."""
     groups = {}
     for number, row in enumerate(rows):
-        groups.setdefault((row.get("curve", row["test"]), row["quantity"]), []).append(number)
+        groups.setdefault((row["curve"] if "curve" in row else row["test"], row["quantity"]), []).append(number)
     return list(groups.values())
 
 
