@@ -27,8 +27,8 @@ inline std::string protocol_path(const std::string& name_or_path) {
   return input_path(name_or_path, InputKind::protocol);
 }
 
-/// The path of an installed file NAME.toml of a folder of ../share/rvelab/protocols, "studies" or "fits"; "" if there is
-/// none.
+/// The path of an installed file NAME.toml of a folder of ../share/rvelab/protocols, "studies" or "fits"; "" if there
+/// is none.
 std::string installed_in(const std::string& folder, const std::string& name);
 
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the

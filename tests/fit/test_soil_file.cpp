@@ -30,9 +30,9 @@ TEST_CASE("A soil file names recipe, ranges and tests, each with its specimen") 
   REQUIRE(file.measured.size() == 2);
   CHECK(file.measured[0].selection.columns[1] == "deviator_kPa=q");
   CHECK(file.measured[0].selection.to == 15.0);
-  CHECK(file.measured[0].assignments() == std::vector<std::string>{"target.pressure_Pa=100000", "test.pressure_Pa=100000",
-                                                                   "target.relative_density=0.25",
-                                                                   "stage.compression.to_strain=0.1"});
+  CHECK(file.measured[0].assignments() ==
+        std::vector<std::string>{"target.pressure_Pa=100000", "test.pressure_Pa=100000", "target.relative_density=0.25",
+                                 "stage.compression.to_strain=0.1"});
   CHECK(file.measured[1].predict);
   CHECK(file.measured[1].targets[0].error == 1);
 }
