@@ -177,10 +177,10 @@ class Case:
         return self.dimension == 2
 
     def lacks(self, *features):
-        """The first of these features that the case has: 'rolling', 'hertz rolling', 'discs', 'shear', 'held'."""
+        """The first of these features that the case has: 'rolling', 'hertz rolling', 'discs', 'shear', 'held', 'rate'."""
         has = {"rolling": self.rolling, "hertz": self.law["kind"] == "hertz_mindlin", "discs": self.disc,
                "shear": any(leg.gradient[i][j] for leg in self.legs for i in range(3) for j in range(3) if i != j),
-               "held": any(leg.held_Pa for leg in self.legs), "hertz rolling": False,
+               "held": any(leg.held_Pa for leg in self.legs), "hertz rolling": False, "rate": self.rate > 0,
                "linear dashpot": "restitution" in self.law and self.law["kind"] == "linear"}
         has["hertz rolling"] = has["hertz"] and has["rolling"]
         return next((feature for feature in features if has[feature]), None)

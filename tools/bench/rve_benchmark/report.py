@@ -8,8 +8,8 @@ from case import CaseError
 
 TARGETS = (0.01, 0.001)
 # Colours that are told apart by colour-blind people (Okabe and Ito), each with a marker of its own.
-LOOKS = {"rvelab": ("#0072B2", "o"), "LAMMPS": ("#D55E00", "s"), "YADE": ("#009E73", "^"), "LIGGGHTS": ("#CC79A7", "D")}
-OTHERS = (("#000000", "v"), ("#E69F00", "P"), ("#56B4E9", "X"))
+LOOKS = {"rvelab": ("#0072B2", "o"), "rvelab, u given": ("#56B4E9", "o"), "LAMMPS": ("#D55E00", "s"), "YADE": ("#009E73", "^"), "LIGGGHTS": ("#CC79A7", "D")}
+OTHERS = (("#000000", "v"), ("#E69F00", "P"), ("#F0E442", "X"))
 
 
 @dataclass
