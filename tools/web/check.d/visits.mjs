@@ -1,4 +1,4 @@
-// Five visits as a new user makes them. Each gives what it found in one line and a picture; a claim that does not hold
+// Visits as a new user makes them. Each gives what it found in one line and a picture; a claim that does not hold
 // is an error with what was found.
 import { execFileSync } from "node:child_process";
 import { copyFileSync, readFileSync } from "node:fs";
@@ -100,6 +100,36 @@ async function exported({ browser, address, folder, scratch, program }) {
   return "the program goes on from page.rvesnap to the same bits as from its own test";
 }
 
+/** Ellipses laid with their long axes near x, and spheres in space: a friction angle of either. */
+async function ellipses({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.fields.preset, "Bedded ellipses");
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "6_ellipses");
+  await tab.close();
+  claim(phi > 15 && phi < 50, `a friction angle of ${phi} degrees of ellipses`);
+  return `friction angle ${phi} degrees`;
+}
+
+async function spheres({ browser, address, folder, scratch }) {
+  const { tab } = await open(browser, address, { width: 1280, height: 900 }, true);
+  await choose(tab, words.fields.preset, "Glass spheres");
+  await fill(tab, words.fields.grains, 300);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "7_spheres");
+  const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
+  await tab.close();
+  claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees of spheres`);
+  const [xx, zz] = ["xx", "zz"].map((name) => Number(rows.at(-1)[`sigma_${name}_Pa`]));
+  claim(zz < xx && xx < 0, `sigma_xx ${xx} and sigma_zz ${zz} Pa at the end of a compression along z`);
+  return `friction angle ${phi} degrees`;
+}
+
 /** A wrong number is told with its field, and nothing runs; so is a link that is none. */
 async function wrongInput({ browser, address, folder }) {
   const { tab } = await open(browser, address);
@@ -114,4 +144,12 @@ async function wrongInput({ browser, address, folder }) {
   return told[0];
 }
 
-export const visits = { "sieve curve": sieveCurve, "two frictions": twoFrictions, liquefaction, export: exported, "wrong input": wrongInput };
+export const visits = {
+  "sieve curve": sieveCurve,
+  "two frictions": twoFrictions,
+  liquefaction,
+  export: exported,
+  ellipses,
+  spheres,
+  "wrong input": wrongInput,
+};
