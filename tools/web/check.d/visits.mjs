@@ -36,6 +36,8 @@ async function sieveCurve({ browser, address, folder }) {
   await fill(tab, words.fields.strain, 4);
   await packAndTest(tab);
   const [, phi, error, nq] = await text(tab, angle, 10);
+  const legend = await tab.$$eval("#key li", (items) => items.map((item) => item.innerText.trim()).join(", "));
+  claim(legend === "50 kPa, 100 kPa, 200 kPa", `the legend has the tests in the order ${legend}`);
   await picture(tab, folder, "1_sieve_curve");
   await tab.close();
   claim(phi > 10 && phi < 40, `a friction angle of ${phi} degrees of discs`);
@@ -62,6 +64,20 @@ async function twoFrictions({ browser, address, folder, scratch }) {
   const [first, other] = tests.map((test) => Number(rows.filter((row) => row.test === test).at(-1).q_Pa));
   claim(other < 0.8 * first, `q ${other} Pa with 5 degrees between grains, ${first} Pa with 23`);
   return `q at the end ${(first / 1e3).toFixed(1)} kPa, gone on with 5 degrees ${(other / 1e3).toFixed(1)} kPa`;
+}
+
+/** Dense discs at constant volume: their largest stress ratio is about that of drained tests, whatever the deviator does. */
+async function dense({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.fields.test, words.tests.undrained);
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "8_dense_undrained");
+  await tab.close();
+  claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees at constant volume`);
+  return `friction angle ${phi} degrees`;
 }
 
 /** Loose discs at constant volume lose their mean stress. */
@@ -147,6 +163,7 @@ async function wrongInput({ browser, address, folder }) {
 export const visits = {
   "sieve curve": sieveCurve,
   "two frictions": twoFrictions,
+  "dense, constant volume": dense,
   liquefaction,
   export: exported,
   ellipses,

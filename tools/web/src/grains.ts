@@ -146,14 +146,14 @@ export class GrainView {
   private readonly bars: Squares;
   /** Drawn without a graphics card: fewer pixels while the grains move. */
   private readonly slow: boolean;
-  private colours: { fill: number[]; rim: number[] } | null = null;
+  private colours: { fill: number[]; rim: number[]; paper: number[] } | null = null;
   private picture: Picture | null = null;
   private moving = false;
   private wanted = false;
   private turned = { azimuth: 0.5, height: 0.35 }; // radians, of the eye; spheres
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: false });
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
     if (!gl) throw new Error("WebGL 2 is switched off in this browser; switch it on, or use another one");
     this.gl = gl;
     const info = gl.getExtension("WEBGL_debug_renderer_info");
@@ -205,8 +205,9 @@ export class GrainView {
   private colour() {
     if (this.colours !== null) return this.colours;
     const style = getComputedStyle(this.canvas);
-    const channel = (name: string) => [...style.getPropertyValue(name).split(",").map((part) => Number(part) / 255), 1];
-    return (this.colours = { fill: channel("--grain"), rim: channel("--grain-rim") });
+    const colour = (text: string) => [...text.match(/\d+/g)!.slice(0, 3).map((part) => Number(part) / 255), 1];
+    const [fill, rim] = ["--grain", "--grain-rim"].map((name) => colour(style.getPropertyValue(name)));
+    return (this.colours = { fill, rim, paper: colour(style.backgroundColor) });
   }
 
   private draw() {
@@ -217,7 +218,8 @@ export class GrainView {
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
     gl.viewport(0, 0, width, height);
-    gl.clearColor(0, 0, 0, 0);
+    const { fill, rim, paper } = this.colour();
+    gl.clearColor(paper[0], paper[1], paper[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (!picture) return;
     const space = picture.dimension === 3;
@@ -241,7 +243,7 @@ export class GrainView {
     if (space) gl.enable(gl.DEPTH_TEST);
     else gl.disable(gl.DEPTH_TEST);
     // A sphere has some six contacts.
-    this.grains.set({ ...view, ...this.colour(), shaded: Number(space), mean: 3 * mean });
+    this.grains.set({ ...view, fill, rim, shaded: Number(space), mean: 3 * mean });
     this.grains.draw(grains);
     if (space || contacts.length === 0) return;
     this.bars.set({ ...view, mean, width: 0.35 * radius });

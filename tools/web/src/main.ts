@@ -23,7 +23,7 @@ document.querySelector("#page")!.innerHTML = `
     <section><h2>${words.mohr}</h2><div id="mohr">${words.mohrNone}</div><p class="strength" id="strength"></p><small id="scatter"></small></section>
     <section id="whatif"><h2>${words.whatIf}</h2><p class="soft">${words.whatIfText}</p>
       <label for="from">${f.from} <output id="fromstrain"></output><input id="from" type="range" min="0" max="0" value="0" disabled></label>
-      <label for="friction">${f.whatIf} <output id="angle">10</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
+      <label for="friction">${f.whatIf} <output id="angle">10°</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
       <button id="fork" type="button" disabled>${words.whatIfRun}</button></section>
     <section><h2>${words.probe}</h2><p class="soft">${words.probeText}</p>
       <div class="pads"><div class="pad" id="pad" tabindex="0" role="application"></div><div class="envelope" id="envelope"></div></div>
@@ -240,7 +240,7 @@ document.querySelector("form")!.addEventListener("submit", (event) => {
 part("stop").addEventListener("click", endAll);
 part("fork").addEventListener("click", () => void goOn());
 part<HTMLInputElement>("friction").addEventListener("input", (event) => {
-  part("angle").textContent = (event.target as HTMLInputElement).value;
+  part("angle").textContent = `${(event.target as HTMLInputElement).value}°`;
 });
 part("envelopes").addEventListener("click", async () => {
   if (shown === null) return;

@@ -28,7 +28,7 @@ export const words = {
     pressures: "Pressures, kPa (several with commas)",
     strain: "Strain to reach, %",
     seeds: "Specimens (seeds)",
-    whatIf: "Friction angle from the kept state on, °",
+    whatIf: "Friction angle from the kept state on",
     from: "Go on from strain",
   },
   grading: "Grading",
