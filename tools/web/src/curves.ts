@@ -50,7 +50,7 @@ export class CurveView {
   private curves: Curve[] = [];
   private test: TestKind = "biaxial";
 
-  private readonly drawSoon = seldom(200, () => this.draw());
+  private readonly drawSoon = seldom(300, () => this.draw());
 
   constructor(private readonly place: HTMLElement) {
     new ResizeObserver(() => this.plot?.setSize(this.size())).observe(place);

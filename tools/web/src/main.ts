@@ -55,10 +55,12 @@ let resolved = { recipe: "", protocol: "" };
 /** The laboratory whose grains are shown; it stays for what comes after a test. */
 let shown: Client | null = null;
 let others: Client[] = [];
+/** Made while the page is read: its WebAssembly is compiled by the time that a test begins. */
+let spare: Client | null = new Client();
 let running = false;
 let picture: Picture | null = null;
 
-const tellState = seldom(200, () => {
+const tellState = seldom(300, () => {
   if (picture === null) return;
   const text = words.grainsLabel(picture.grains.length / grainColumns, picture.void_ratio, picture.coordination);
   part("state").textContent = text;
@@ -153,7 +155,7 @@ async function runAll() {
   showCurves();
   const all = jobs.length;
   const begin = performance.now();
-  shown = new Client();
+  [shown, spare] = [spare ?? new Client(), null];
   others = Array.from({ length: Math.min(all - 1, Math.max(1, (navigator.hardwareConcurrency || 2) - 1), 7) }, () => new Client());
   allow(false);
   const work = async (client: Client) => {

@@ -13,7 +13,7 @@ const ready = new Promise<WebAssembly.Module>((resolve) => (start = resolve)).th
   });
   return { module, laboratory: new module.Laboratory() };
 });
-const betweenPictures = 25; // ms
+const betweenPictures = 20; // ms
 
 self.onmessage = async (event: MessageEvent<{ id: number; call: Call } | { module: WebAssembly.Module }>) => {
   if ("module" in event.data) return start(event.data.module);
