@@ -3,7 +3,7 @@
 set(web ${PROJECT_SOURCE_DIR}/tools/web/native)
 room_sources(laboratory_sources pack protocol calibrate ensemble)
 # What a page loads at first is as small as it may be: kernels of what it can ask for, and small code where no loop is
-# (-Os for the core, which then calls each accessor of Eigen, would save a sixth and take 1.5 times as long).
+# (-Os for the core, which then calls each accessor of Eigen, would save a seventh and take 1.6 times as long or more).
 target_compile_definitions(rvelab_core PRIVATE RVELAB_FEWER_KERNELS)
 target_compile_definitions(rvelab_kernel_baseline PRIVATE RVELAB_FEWER_KERNELS)
 target_compile_options(rvelab_keys PRIVATE -Os)
