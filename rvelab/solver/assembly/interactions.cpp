@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "rvelab/contact/laws.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/listing.hpp"
 
 namespace rvelab {
@@ -253,8 +254,10 @@ void derive_interactions(const Model& model, PairTable& pairs) {
 namespace {
 
 void run(const Model& model, const InteractionKernel* kernels, const StepConstants& constants, Assembly& assembly) {
-  for (InteractionTable& t : assembly.pairs.interactions)
+  for (InteractionTable& t : assembly.pairs.interactions) {
+    if (kernels[t.kind] == nullptr) throw InputError("this build has no kernels of interactions; use the program");
     kernels[t.kind](constants, arrays_of(model, assembly.pairs, t), assembly.rows.data(), 0, long(t.padded()));
+  }
 }
 
 }  // namespace

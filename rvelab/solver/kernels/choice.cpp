@@ -81,6 +81,10 @@ Kernels kernels_for(const KernelConfiguration& key) {
   Kernels kernels;
   instruction_sets().back().of(key.shape)(key, kernels);
   set.of(key.shape)(key, kernels);
+  if (kernels.pairs == nullptr)
+    throw InputError(
+        "this build has no kernels of superellipsoids, dashpots, the laws hertz_stiffness and linear_adhesive and the "
+        "slip of other codes; use the program");
   kernels.instruction_set = set.name;
   return kernels;
 }

@@ -5,6 +5,8 @@
 // scalar reference that every vector path equals bitwise.
 #pragma once
 
+#include <type_traits>
+
 #include "rvelab/solver/kernels/integrate_discs.hpp"
 #include "rvelab/solver/kernels/integrate_spheres.hpp"
 #include "rvelab/solver/kernels/interaction_loops.hpp"
@@ -18,6 +20,17 @@
 
 namespace rvelab {
 namespace {
+
+/// A build whose weight counts (tools/cmake/wasm.cmake) has kernels of quasi-static loading of discs, ellipses and
+/// spheres, linear and Hertzian, without dashpots and interactions. The rest is refused where its kernel is asked for.
+#ifdef RVELAB_FEWER_KERNELS
+constexpr bool fewer_kernels = true;
+#else
+constexpr bool fewer_kernels = false;
+#endif
+template <class Law>
+constexpr bool has_kernels =
+    !fewer_kernels || (!std::is_same_v<Law, LinearAdhesiveLaw> && !std::is_same_v<Law, HertzStiffnessLaw>);
 
 /// `Pairs`: the geometry of a shape, like Discs.
 template <class Pairs, class Law, class T>
@@ -49,7 +62,9 @@ PairKernel by_slip(const KernelConfiguration& key) {
   }
   // Without motion there is no slip. The conventions of other codes serve comparison with these and are compiled for
   // narrow lanes alone (choice.cpp).
-  if constexpr (W <= 2 && (Advance || Dashpot)) {
+  if constexpr (fewer_kernels) {
+    if (key.slip != Slip::consistent) return nullptr;
+  } else if constexpr (W <= 2 && (Advance || Dashpot)) {
     if (key.slip == Slip::full_radius)
       return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance>>();
     if (key.slip == Slip::full_radius_ratcheting)
@@ -60,17 +75,25 @@ PairKernel by_slip(const KernelConfiguration& key) {
 
 template <class Pairs, int W, bool Advance, class Law>
 PairKernel by_features(const KernelConfiguration& key) {
-  if (key.rolling)
-    return key.dashpot ? by_slip<Pairs, W, Advance, Law, true, true>(key)
-                       : by_slip<Pairs, W, Advance, Law, true, false>(key);
-  return key.dashpot ? by_slip<Pairs, W, Advance, Law, false, true>(key)
-                     : by_slip<Pairs, W, Advance, Law, false, false>(key);
+  if constexpr (fewer_kernels) {
+    if (key.dashpot) return nullptr;
+    return key.rolling ? by_slip<Pairs, W, Advance, Law, true, false>(key)
+                       : by_slip<Pairs, W, Advance, Law, false, false>(key);
+  } else {
+    if (key.rolling)
+      return key.dashpot ? by_slip<Pairs, W, Advance, Law, true, true>(key)
+                         : by_slip<Pairs, W, Advance, Law, true, false>(key);
+    return key.dashpot ? by_slip<Pairs, W, Advance, Law, false, true>(key)
+                       : by_slip<Pairs, W, Advance, Law, false, false>(key);
+  }
 }
 
 template <class Pairs, int W, bool Advance>
 PairKernel pair_kernel_for(const KernelConfiguration& key) {
-  return with_law(key.law,
-                  [&](auto law) { return by_features<Pairs, W, Advance, typename decltype(law)::Force>(key); });
+  return with_law(key.law, [&](auto law) -> PairKernel {
+    if constexpr (has_kernels<decltype(law)>) return by_features<Pairs, W, Advance, typename decltype(law)::Force>(key);
+    return nullptr;
+  });
 }
 
 template <class Pairs, int W, bool Rolling>
@@ -79,6 +102,7 @@ void set_grain_kernels(Kernels& kernels) {
   kernels.quasi_static[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, none>>();
   kernels.quasi_static[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, vector>>();
   kernels.quasi_static[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, component>>();
+  if constexpr (fewer_kernels) return;
   kernels.at_rate[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, none>>();
   kernels.at_rate[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, vector>>();
   kernels.at_rate[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
@@ -109,8 +133,10 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
   if constexpr (W == 1) {
     kernels.pairs_with_losses = kernels.pairs;
     kernels.evaluate = pair_kernel_for<Pairs, W, false>(key);
+    if constexpr (fewer_kernels) return;  // the other loops are those of more lanes
   }
-  if constexpr (Pairs::By::round) set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
+  if constexpr (Pairs::By::round && !fewer_kernels)
+    set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
   // Bodies have their own step (loading/body_motion.hpp).
   if constexpr (Pairs::By::rigid) {
     kernels.lanes = W;

@@ -8,7 +8,9 @@
 namespace rvelab {
 
 template <>
-void StepKernels<Shape::superellipsoid>::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
+void StepKernels<Shape::superellipsoid>::RVELAB_ISA([[maybe_unused]] const KernelConfiguration& key,
+                                                    [[maybe_unused]] Kernels& kernels) {
+#ifndef RVELAB_FEWER_KERNELS
   if (key.ellipsoids) {
     set_kernels<SuperellipsoidPairs<true>, RVELAB_LANES>(key, kernels);
     kernels.places = &superellipsoid_pair_places<RVELAB_LANES, true>;
@@ -16,6 +18,7 @@ void StepKernels<Shape::superellipsoid>::RVELAB_ISA(const KernelConfiguration& k
     set_kernels<SuperellipsoidPairs<false>, RVELAB_LANES>(key, kernels);
     kernels.places = &superellipsoid_pair_places<RVELAB_LANES, false>;
   }
+#endif
 }
 
 }  // namespace rvelab

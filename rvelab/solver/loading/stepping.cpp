@@ -200,7 +200,10 @@ class SubSteps {
 GrainKernel grain_kernel(const Model& model, const Assembly& assembly, Loading loading) {
   const auto kind = std::size_t(damping_kind(model.damping, loading));
   const Kernels& kernels = model.kernels_at(assembly.state.last_step.loading);
-  return loading == Loading::at_rate ? kernels.at_rate[kind] : kernels.quasi_static[kind];
+  const GrainKernel chosen = loading == Loading::at_rate ? kernels.at_rate[kind] : kernels.quasi_static[kind];
+  if (chosen == nullptr && !model.bodies)
+    throw InputError("this build has no kernels of loading at a rate; use the program");
+  return chosen;
 }
 
 SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)

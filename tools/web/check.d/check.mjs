@@ -1,4 +1,4 @@
-// The built page in Chromium: what it weighs, how fast it is beside the program, and five visits. Run by tools/web/check.
+// The built page in Chromium: what it weighs, how fast it is beside the program, and visits. Run by tools/web/check.
 //
 //   node check.mjs dist/index.html PROGRAM FOLDER
 //

@@ -1,4 +1,4 @@
-// Five visits as a new user makes them. Each gives what it found in one line and a picture; a claim that does not hold
+// Visits as a new user makes them. Each gives what it found in one line and a picture; a claim that does not hold
 // is an error with what was found.
 import { execFileSync } from "node:child_process";
 import { copyFileSync, readFileSync } from "node:fs";
@@ -36,6 +36,8 @@ async function sieveCurve({ browser, address, folder }) {
   await fill(tab, words.fields.strain, 4);
   await packAndTest(tab);
   const [, phi, error, nq] = await text(tab, angle, 10);
+  const legend = await tab.$$eval("#key li", (items) => items.map((item) => item.innerText.trim()).join(", "));
+  claim(legend === "50 kPa, 100 kPa, 200 kPa", `the legend has the tests in the order ${legend}`);
   await picture(tab, folder, "1_sieve_curve");
   await tab.close();
   claim(phi > 10 && phi < 40, `a friction angle of ${phi} degrees of discs`);
@@ -62,6 +64,20 @@ async function twoFrictions({ browser, address, folder, scratch }) {
   const [first, other] = tests.map((test) => Number(rows.filter((row) => row.test === test).at(-1).q_Pa));
   claim(other < 0.8 * first, `q ${other} Pa with 5 degrees between grains, ${first} Pa with 23`);
   return `q at the end ${(first / 1e3).toFixed(1)} kPa, gone on with 5 degrees ${(other / 1e3).toFixed(1)} kPa`;
+}
+
+/** Dense discs at constant volume: their largest stress ratio is about that of drained tests, whatever the deviator does. */
+async function dense({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.fields.test, words.tests.undrained);
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "8_dense_undrained");
+  await tab.close();
+  claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees at constant volume`);
+  return `friction angle ${phi} degrees`;
 }
 
 /** Loose discs at constant volume lose their mean stress. */
@@ -100,6 +116,36 @@ async function exported({ browser, address, folder, scratch, program }) {
   return "the program goes on from page.rvesnap to the same bits as from its own test";
 }
 
+/** Ellipses laid with their long axes near x, and spheres in space: a friction angle of either. */
+async function ellipses({ browser, address, folder }) {
+  const { tab } = await open(browser, address);
+  await choose(tab, words.fields.preset, "Bedded ellipses");
+  await fill(tab, words.fields.grains, 200);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "6_ellipses");
+  await tab.close();
+  claim(phi > 15 && phi < 50, `a friction angle of ${phi} degrees of ellipses`);
+  return `friction angle ${phi} degrees`;
+}
+
+async function spheres({ browser, address, folder, scratch }) {
+  const { tab } = await open(browser, address, { width: 1280, height: 900 }, true);
+  await choose(tab, words.fields.preset, "Glass spheres");
+  await fill(tab, words.fields.grains, 300);
+  await fill(tab, words.fields.strain, 4);
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, "7_spheres");
+  const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
+  await tab.close();
+  claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees of spheres`);
+  const [xx, zz] = ["xx", "zz"].map((name) => Number(rows.at(-1)[`sigma_${name}_Pa`]));
+  claim(zz < xx && xx < 0, `sigma_xx ${xx} and sigma_zz ${zz} Pa at the end of a compression along z`);
+  return `friction angle ${phi} degrees`;
+}
+
 /** A wrong number is told with its field, and nothing runs; so is a link that is none. */
 async function wrongInput({ browser, address, folder }) {
   const { tab } = await open(browser, address);
@@ -114,4 +160,13 @@ async function wrongInput({ browser, address, folder }) {
   return told[0];
 }
 
-export const visits = { "sieve curve": sieveCurve, "two frictions": twoFrictions, liquefaction, export: exported, "wrong input": wrongInput };
+export const visits = {
+  "sieve curve": sieveCurve,
+  "two frictions": twoFrictions,
+  "dense, constant volume": dense,
+  liquefaction,
+  export: exported,
+  ellipses,
+  spheres,
+  "wrong input": wrongInput,
+};

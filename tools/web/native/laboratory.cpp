@@ -2,7 +2,7 @@
 // strained by hand. A few calls over the classes of the library; the laws, the tests and the keys are theirs.
 //
 // Each call answers an object. Where something was wrong it has the member `error`, a sentence, and nothing changed.
-// Stress: Pa, laboratory frame, tension positive, as [xx, yy, xy]. Lengths in m.
+// Stress: Pa, laboratory frame, tension positive, as [xx, yy, zz, yz, xz, xy]. Lengths in m.
 #include <emscripten/bind.h>
 
 #include <algorithm>
@@ -41,14 +41,26 @@ val answer(const Call& call) {
 val numbers(const std::vector<double>& values) {
   return val::global("Float64Array").new_(emscripten::typed_memory_view(values.size(), values.data()));
 }
-val stress_of(const Matrix3& s) { return numbers({s(0, 0), s(1, 1), 0.5 * (s(0, 1) + s(1, 0))}); }
+/// Single precision: what is drawn.
+val drawn_numbers(const std::vector<float>& values) {
+  return val::global("Float32Array").new_(emscripten::typed_memory_view(values.size(), values.data()));
+}
+val stress_of(const Matrix3& s) {
+  return numbers(
+      {s(0, 0), s(1, 1), s(2, 2), 0.5 * (s(1, 2) + s(2, 1)), 0.5 * (s(0, 2) + s(2, 0)), 0.5 * (s(0, 1) + s(1, 0))});
+}
 
 std::vector<std::string> texts(const val& list) { return emscripten::vecFromJSArray<std::string>(list); }
 
-/// x, y, r, angle, a, b of each grain that is drawn, laboratory frame; a round one has a = b = r.
-std::vector<double> grains_of(const Network& network) {
-  std::vector<double> rows;
-  for (const GrainState& grain : network.drawn()) {
+/// x, y, z, angle, a, b and the sum of the pressing forces (N) of each grain that is drawn, laboratory frame; a round
+/// one has a = b = r.
+std::vector<float> grains_of(const Network& network) {
+  std::vector<double> pressed(network.grains.size());
+  for (const ContactState& contact : network.contacts)
+    for (const auto grain : {contact.i, contact.j}) pressed[std::size_t(grain)] += contact.normal_force;
+  std::vector<float> rows;
+  for (std::size_t g = 0; g < network.grains.size(); ++g) {
+    const GrainState& grain = network.grains[g];
     const Vector3 at = network.cell.rotation * grain.position;
     const Vector3 along = network.cell.rotation * grain.orientation;
     double a = grain.radius, b = grain.radius;
@@ -58,20 +70,20 @@ std::vector<double> grains_of(const Network& network) {
           [&](const auto&, const double& value) { (column++ == 0 ? a : b) = value; },
           static_cast<const OwnValues&>(grain));
     });
-    rows.insert(rows.end(), {at[0], at[1], grain.radius, std::atan2(along[1], along[0]), a, b});
+    for (const double value : {at[0], at[1], at[2], std::atan2(along[1], along[0]), a, b, pressed[g]})
+      rows.push_back(float(value));
   }
   return rows;
 }
 
-/// x, y of grain i, branch in x and y, normal force (N), 1 where it slides: of each contact, laboratory frame.
-std::vector<double> contacts_of(const Network& network) {
-  std::vector<double> rows;
+/// x, y, z of grain i, branch, normal force (N) of each contact, laboratory frame.
+std::vector<float> contacts_of(const Network& network) {
+  std::vector<float> rows;
   for (const ContactState& contact : network.contacts) {
     const Vector3 from = network.cell.rotation * network.grains[std::size_t(contact.i)].position;
     const Vector3 branch = network.cell.rotation * contact.branch;
-    const bool slides =
-        contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.pressing_force);
-    rows.insert(rows.end(), {from[0], from[1], branch[0], branch[1], contact.normal_force, double(slides)});
+    for (const double value : {from[0], from[1], from[2], branch[0], branch[1], branch[2], contact.normal_force})
+      rows.push_back(float(value));
   }
   return rows;
 }
@@ -117,16 +129,17 @@ class Laboratory {
     return answer([&](val& told) {
       const Network network = shown().network();
       const Matrix3 cell = network.cell.rotation * network.cell.lattice;
-      told.set("cell", numbers({cell(0, 0), cell(1, 0), cell(0, 1), cell(1, 1)}));
-      told.set("grains", numbers(grains_of(network)));
-      told.set("contacts", numbers(contacts_of(network)));
+      told.set("dimension", network.dimension());
+      told.set("cell", numbers({cell.data(), cell.data() + 9}));
+      told.set("grains", drawn_numbers(grains_of(network)));
+      told.set("contacts", drawn_numbers(contacts_of(network)));
       told.set("void_ratio", void_ratio(network));
       told.set("coordination", coordination_number(network));
       told.set("stress", stress_of(shown().stress()));
     });
   }
 
-  /// Runs a protocol in TOML on the specimen. on_record(row) at each record, row = [stage, strain, sxx, syy, sxy, p, q,
+  /// Runs a protocol in TOML on the specimen. on_record(row) at each record, row = [stage, strain, stress, p, q,
   /// volumetric strain since the start of the stage (compression positive), 1 if it is an equilibrium]; on_step() after
   /// each increment. States are kept `forks` times over the records, from which fork() goes on.
   val run(const std::string& text, const val& settings, int forks, const val& on_record, const val& on_step) {
@@ -211,7 +224,9 @@ class Laboratory {
   template <class Run>
   records::TestResult finish(val& told, const Run& run, std::size_t every, const val& on_record, const val& on_step) {
     protocol::Watch watch;
-    watch.on_record = [&](const records::Record& record) { on_record(row_of(record)); };
+    watch.on_record = [&, dimension = opened().cell().dimension](const records::Record& record) {
+      on_record(row_of(record, dimension));
+    };
     std::size_t last_kept = 0;
     watch.on_path_point = [&](const protocol::PathPoint& point) {
       running_ = &point.rve;
@@ -233,24 +248,31 @@ class Laboratory {
     for (std::size_t k = 0; k < made.events.size(); ++k) events.set(k, made.events[k]);
     told.set("events", events);
     told.set("records", double(made.result.records.size()));
-    const calibrate::Peak peak = calibrate::peak(calibrate::last_stage(made.result), 2);
-    told.set("peak_s", peak.stresses.s());
-    told.set("peak_t", peak.stresses.t());
-    told.set("peak_strain", peak.strain);
-    told.set("friction_angle", calibrate::friction_angle_deg(peak.stresses));
+    const calibrate::PrincipalStresses failure = failure_of(made.result, rve_->cell().dimension);
+    told.set("peak_s", failure.s());
+    told.set("peak_t", failure.t());
     return made.result;
   }
 
-  static val row_of(const records::Record& record) {
+  /// The stresses of the largest circle where a stress is held. At constant volume both stresses change and the largest
+  /// deviator says little of the strength: those of the largest ratio, of means over 1 % of strain (NaN of a shorter
+  /// test).
+  calibrate::PrincipalStresses failure_of(const records::TestResult& result, int dimension) const {
+    const auto records = calibrate::last_stage(result);
+    return protocol::role_of(protocol_->stages.back()).gives == protocol::StageRole::Gives::strength
+               ? calibrate::peak(records, dimension).stresses
+               : calibrate::peak_of_moving_mean(records, dimension);
+  }
+
+  static val row_of(const records::Record& record, int dimension) {
     const Matrix3& s = record.stress;
-    return numbers({double(record.stage), record.strain, s(0, 0), s(1, 1), 0.5 * (s(0, 1) + s(1, 0)),
-                    -0.5 * (s(0, 0) + s(1, 1)), deviatoric_stress(s, 2), 1 - record.deformation_gradient.determinant(),
-                    double(record.quasi_static && record.target_held)});
+    const double pressure = -(dimension == 2 ? 0.5 * (s(0, 0) + s(1, 1)) : s.trace() / 3);
+    return numbers({double(record.stage), record.strain, s(0, 0), s(1, 1), s(2, 2), 0.5 * (s(1, 2) + s(2, 1)),
+                    0.5 * (s(0, 2) + s(2, 0)), 0.5 * (s(0, 1) + s(1, 0)), pressure, deviatoric_stress(s, dimension),
+                    1 - record.deformation_gradient.determinant(), double(record.quasi_static && record.target_held)});
   }
 
   void open_specimen(const Specimen& specimen) {
-    if (specimen.cell.dimension != 2)
-      throw InputError("this specimen is of spheres; the page tests discs and ellipses; pack one of these");
     rve_.emplace(specimen);
     protocol_.reset();
     kept_.clear();

@@ -2,11 +2,13 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { column } from "./messages";
+import { seldom } from "./seldom";
 import type { TestKind } from "./setup";
 import { words } from "./words";
 
 export interface Curve {
   name: string;
+  colour: string;
   dashed: boolean;
   rows: Float64Array[];
 }
@@ -28,12 +30,27 @@ function axesOf(test: TestKind): Axes {
   return { x: strain, y: q, of: (row) => [100 * row[column.strain], row[column.q] / 1e3] };
 }
 
+/** What `build` draws on is kept in memory, not in the graphics card: some lines are quicker so, and the card, or the
+ *  software in its place, is left to the grains. uPlot has no option for it. */
+function inMemory<Built>(build: () => Built): Built {
+  const usual = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string) {
+    return usual.call(this, kind, { willReadFrequently: true });
+  } as typeof usual;
+  try {
+    return build();
+  } finally {
+    HTMLCanvasElement.prototype.getContext = usual;
+  }
+}
+
 export class CurveView {
   private plot: uPlot | null = null;
   private look = "";
-  private wanted = false;
   private curves: Curve[] = [];
   private test: TestKind = "biaxial";
+
+  private readonly drawSoon = seldom(300, () => this.draw());
 
   constructor(private readonly place: HTMLElement) {
     new ResizeObserver(() => this.plot?.setSize(this.size())).observe(place);
@@ -43,12 +60,7 @@ export class CurveView {
   show(test: TestKind, curves: Curve[]) {
     this.test = test;
     this.curves = curves;
-    if (this.wanted) return;
-    this.wanted = true;
-    requestAnimationFrame(() => {
-      this.wanted = false;
-      this.draw();
-    });
+    this.drawSoon();
   }
 
   private size() {
@@ -73,7 +85,7 @@ export class CurveView {
     if (this.plot !== null && look === this.look) return this.plot.setData(joined as uPlot.AlignedData);
     this.look = look;
     this.plot?.destroy();
-    this.plot = new uPlot(
+    this.plot = inMemory(() => new uPlot(
       {
         ...this.size(),
         scales: { x: { time: false } },
@@ -81,9 +93,9 @@ export class CurveView {
         axes: [axis(axes.x), axis(axes.y)],
         series: [
           {},
-          ...this.curves.map((curve, k) => ({
+          ...this.curves.map((curve) => ({
             label: curve.name,
-            stroke: colours[k % colours.length],
+            stroke: curve.colour,
             width: 2,
             dash: curve.dashed ? [6, 4] : undefined,
             spanGaps: true,
@@ -93,6 +105,6 @@ export class CurveView {
       },
       joined as uPlot.AlignedData,
       this.place,
-    );
+    ));
   }
 }

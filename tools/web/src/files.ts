@@ -9,12 +9,13 @@ export function give(name: string, content: BlobPart, type: string) {
   setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
 
-/** Every digit that a double has. */
-export function csvOf(curves: Curve[]): string {
-  const head = "test,stage,strain,sigma_xx_Pa,sigma_yy_Pa,sigma_xy_Pa,p_Pa,q_Pa,volumetric_strain,held";
-  const columns = Object.values(column);
+/** Every digit that a double has. In the plane there is no z. */
+export function csvOf(curves: Curve[], dimension: number): string {
+  const columns = Object.entries(column).filter(([name]) => dimension === 3 || !/z$/.test(name));
+  const names: Record<string, string> = { p: "p_Pa", q: "q_Pa", volume: "volumetric_strain" };
+  const head = ["test", ...columns.map(([name]) => names[name] ?? (/^[xyz]{2}$/.test(name) ? `sigma_${name}_Pa` : name))];
   const lines = curves.flatMap((curve) =>
-    curve.rows.map((row) => [`"${curve.name}"`, ...columns.map((k) => row[k])].join(",")),
+    curve.rows.map((row) => [`"${curve.name}"`, ...columns.map(([, k]) => row[k])].join(",")),
   );
-  return [head, ...lines, ""].join("\n");
+  return [head.join(","), ...lines, ""].join("\n");
 }

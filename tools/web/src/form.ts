@@ -1,6 +1,6 @@
 /** The form of a set-up: built from the words, filled from a set-up, and read back. */
 import { soils } from "./soils";
-import { ranges, usual, type SetUp } from "./setup";
+import { ranges, testsOf, usual, type SetUp } from "./setup";
 import { words } from "./words";
 
 type Shown = keyof typeof words.fields;
@@ -41,8 +41,8 @@ export function formOf(): string {
 }
 
 export class SetUpForm {
-  private rolling = true;
-  private name = "";
+  /** What has no field: of the soil that was chosen. */
+  private kept: Partial<SetUp> = {};
 
   constructor(private readonly form: HTMLFormElement, onChange: () => void) {
     form.addEventListener("change", (event) => {
@@ -54,8 +54,7 @@ export class SetUpForm {
   }
 
   fill(setUp: SetUp) {
-    this.rolling = setUp.rolling;
-    this.name = setUp.name;
+    this.kept = setUp;
     for (const [key, value] of Object.entries(setUp)) {
       const field = this.form.elements.namedItem(key) as HTMLInputElement | null;
       if (field) field.value = Array.isArray(value) ? value.join(", ") : String(value);
@@ -64,7 +63,7 @@ export class SetUpForm {
   }
 
   read(): SetUp {
-    const setUp: SetUp = { ...usual(), rolling: this.rolling, name: this.name };
+    const setUp: SetUp = { ...usual(), ...this.kept };
     const into = setUp as unknown as Record<string, unknown>;
     for (const [key, value] of new FormData(this.form)) {
       const text = String(value);
@@ -76,7 +75,10 @@ export class SetUpForm {
 
   /** Shows the fields that count. */
   private follow() {
-    const { grading, preset, test } = this.read();
+    const setUp = this.read();
+    const { grading, preset, test } = setUp;
+    for (const option of this.form.querySelectorAll<HTMLOptionElement>("[name=test] option"))
+      option.text = testsOf(setUp)[option.value as SetUp["test"]];
     for (const label of this.form.querySelectorAll<HTMLElement>("[data-for]")) {
       const key = label.dataset.for!;
       const sieve = /^d\d0$/.test(key);

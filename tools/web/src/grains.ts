@@ -1,64 +1,54 @@
-/** Grains and forces by WebGL2: each grain an instance of one square, each contact an instance of one bar. */
-import type { Picture } from "./messages";
+/** Grains and forces by WebGL2: each grain a square, each contact a bar, all of one kind in one call. Spheres are shaded
+ *  squares that face the eye. Instances of one square take a software renderer 20 us each. */
+import { contactColumns, grainColumns, type Picture } from "./messages";
 
-const grainVertex = `#version 300 es
-in vec2 corner; in vec2 at; in float r; uniform vec4 view; out vec2 q;
-void main() { q = corner; gl_Position = vec4((at + corner * r - view.xy) * view.zw, 0, 1); }`;
+/* `axes` are the rows of the eye: right, up, towards it. Edges are smoothed over a pixel by the shaders themselves:
+   samples of the whole canvas cost more than the grains where no graphics card draws. */
+const place = `vec2 seen(vec3 p) { return (axes * (p - centre)).xy; } float depth(vec3 p) { return -(axes * (p - centre)).z * scale.y * 0.5; }`;
+const head = `#version 300 es
+uniform mat3 axes; uniform vec3 centre; uniform vec2 scale; uniform float pixel;
+#define corner vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID & 2) - 1)`;
+const grainVertex = `${head}
+in vec3 at; in float angle; in vec2 half_axes; in float load; uniform float mean;
+out vec2 q; out float warm; ${place}
+void main() { q = corner; warm = clamp(load / (4.0 * mean), 0.0, 1.0);
+  vec2 along = vec2(cos(angle), sin(angle)); vec2 c = corner * half_axes;
+  gl_Position = vec4((seen(at) + along * c.x + vec2(-along.y, along.x) * c.y) * scale, depth(at), 1); }`;
 const grainFragment = `#version 300 es
-precision highp float; in vec2 q; uniform vec4 fill; uniform vec4 rim; out vec4 color;
-void main() { float d = length(q); float w = fwidth(d);
-  float inside = 1.0 - smoothstep(1.0 - w, 1.0, d); if (inside <= 0.0) discard;
-  color = mix(fill, rim, smoothstep(0.9 - w, 0.9, d)) * vec4(1, 1, 1, inside); }`;
-const forceVertex = `#version 300 es
-in vec2 corner; in vec4 bar; in float share; uniform vec4 view; uniform float width; out float warm;
-void main() { vec2 across = normalize(vec2(-bar.w, bar.z)) * width * (0.15 + share);
-  vec2 p = bar.xy + bar.zw * (corner.x * 0.5 + 0.5) + across * corner.y;
-  warm = clamp(share * 1.2, 0.0, 1.0); gl_Position = vec4((p - view.xy) * view.zw, 0, 1); }`;
+precision highp float; in vec2 q; in float warm; uniform vec4 fill; uniform vec4 rim; uniform bool shaded; out vec4 color;
+void main() { float d = length(q); float w = fwidth(d); float inside = 1.0 - smoothstep(1.0 - w, 1.0, d);
+  if (inside <= 0.0) discard;
+  if (!shaded) { color = vec4(mix(fill, rim, smoothstep(0.9 - w, 0.9, d)).rgb, inside); return; }
+  vec3 n = vec3(q, sqrt(max(0.0, 1.0 - d * d))); float light = 0.35 + 0.65 * max(0.0, dot(n, vec3(-0.41, 0.57, 0.71)));
+  color = vec4(mix(fill.rgb, vec3(0.86, 0.24, 0.1), warm) * light, 1.0); }`;
+const forceVertex = `${head}
+in vec3 from; in vec3 branch; in float force; uniform float mean; uniform float width;
+out float warm; out float across; out float edge; ${place}
+void main() { float share = min(1.2, force / (4.0 * mean)); vec2 bar = (axes * branch).xy;
+  edge = width * (0.15 + share); across = (edge + pixel) * corner.y;
+  vec2 p = seen(from) + bar * (corner.x * 0.5 + 0.5) + normalize(vec2(-bar.y, bar.x)) * across;
+  warm = clamp(share * 1.2, 0.0, 1.0); gl_Position = vec4(p * scale, -1, 1); }`;
 const forceFragment = `#version 300 es
-precision highp float; in float warm; out vec4 color;
-void main() { color = vec4(mix(vec3(0.15, 0.42, 0.75), vec3(0.85, 0.2, 0.1), warm), 0.35 + 0.65 * warm); }`;
+precision highp float; in float warm; in float across; in float edge; uniform float pixel; out vec4 color;
+void main() { float inside = clamp((edge - abs(across)) / pixel + 0.5, 0.0, 1.0);
+  color = vec4(mix(vec3(0.15, 0.42, 0.75), vec3(0.85, 0.2, 0.1), warm), (0.35 + 0.65 * warm) * inside); }`;
 
-interface Program {
-  program: WebGLProgram;
-  array: WebGLVertexArrayObject;
-  buffer: WebGLBuffer;
-}
+/** A program that draws squares or bars, each of a row of numbers. */
+class Squares {
+  private readonly program: WebGLProgram;
+  private readonly array: WebGLVertexArrayObject;
+  private readonly buffer: WebGLBuffer;
+  private readonly places = new Map<string, WebGLUniformLocation | null>();
+  private vertices = new Float32Array();
+  private room = 0;
 
-export class GrainView {
-  private readonly gl: WebGL2RenderingContext;
-  private readonly discs: Program;
-  private readonly bars: Program;
-  private picture: Picture | null = null;
-  private wanted = false;
-  /** Pictures drawn so far. */
-  frames = 0;
-
-  constructor(private readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-    if (!gl) throw new Error("WebGL 2 is switched off in this browser; switch it on, or use another one");
-    this.gl = gl;
-    this.discs = this.build(grainVertex, grainFragment, [["at", 2], ["r", 1]]);
-    this.bars = this.build(forceVertex, forceFragment, [["bar", 4], ["share", 1]]);
-    new ResizeObserver(() => this.redraw()).observe(canvas);
-  }
-
-  show(picture: Picture) {
-    this.picture = picture;
-    this.redraw();
-  }
-
-  redraw() {
-    if (this.wanted) return;
-    this.wanted = true;
-    requestAnimationFrame(() => {
-      this.wanted = false;
-      this.draw();
-    });
-  }
-
-  private build(vertex: string, fragment: string, columns: [string, number][]): Program {
-    const gl = this.gl;
-    const program = gl.createProgram()!;
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    vertex: string,
+    fragment: string,
+    private readonly columns: readonly (readonly [string, number])[],
+  ) {
+    const program = (this.program = gl.createProgram()!);
     for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
       const shader = gl.createShader(kind)!;
       gl.shaderSource(shader, source);
@@ -67,105 +57,204 @@ export class GrainView {
     }
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? "WebGL");
-    const array = gl.createVertexArray()!;
-    gl.bindVertexArray(array);
-    const square = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, square);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), gl.STATIC_DRAW);
-    const corner = gl.getAttribLocation(program, "corner");
-    gl.enableVertexAttribArray(corner);
-    gl.vertexAttribPointer(corner, 2, gl.FLOAT, false, 0, 0);
-    const buffer = gl.createBuffer()!;
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    const stride = 4 * columns.reduce((sum, [, size]) => sum + size, 0);
+    this.array = gl.createVertexArray()!;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    this.buffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
     let offset = 0;
     for (const [name, size] of columns) {
-      const place = gl.getAttribLocation(program, name);
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, size, gl.FLOAT, false, stride, offset);
-      gl.vertexAttribDivisor(place, 1);
+      const at = gl.getAttribLocation(program, name);
+      gl.enableVertexAttribArray(at);
+      gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * this.width, offset);
       offset += 4 * size;
     }
-    return { program, array, buffer };
+  }
+
+  get width() {
+    return this.columns.reduce((sum, [, size]) => sum + size, 0);
+  }
+
+  set(values: Record<string, number | readonly number[]>) {
+    const gl = this.gl;
+    gl.useProgram(this.program);
+    for (const [name, value] of Object.entries(values)) {
+      if (!this.places.has(name)) this.places.set(name, gl.getUniformLocation(this.program, name));
+      const at = this.places.get(name)!;
+      if (typeof value === "number") name === "shaded" ? gl.uniform1i(at, value) : gl.uniform1f(at, value);
+      else if (value.length === 9) gl.uniformMatrix3fv(at, false, value);
+      else [gl.uniform2fv, gl.uniform3fv, gl.uniform4fv][value.length - 2].call(gl, at, value as number[]);
+    }
+  }
+
+  draw(rows: Float32Array) {
+    const { gl, width } = this;
+    const count = rows.length / width;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+    if (count > this.room) this.make(Math.ceil(1.5 * count));
+    for (let k = 0; k < count; ++k) {
+      const row = rows.subarray(k * width, (k + 1) * width);
+      for (let each = 0; each < 4; ++each) this.vertices.set(row, (4 * k + each) * width);
+    }
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, this.vertices, 0, 4 * rows.length);
+    gl.drawElements(gl.TRIANGLES, 6 * count, gl.UNSIGNED_INT, 0);
+  }
+
+  /** Room for so many squares, two triangles each. */
+  private make(count: number) {
+    const gl = this.gl;
+    this.room = count;
+    this.vertices = new Float32Array(4 * count * this.width);
+    gl.bufferData(gl.ARRAY_BUFFER, this.vertices.byteLength, gl.DYNAMIC_DRAW);
+    const triangles = Uint32Array.from({ length: 6 * count }, (_, k) => 4 * Math.floor(k / 6) + [0, 1, 2, 2, 1, 3][k % 6]);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+  }
+}
+
+/** Moves each point into the cell, whose edges are the columns of `cell`; in place, so a second call changes nothing. */
+function bringHome(cell: Float64Array, dimension: number, rows: Float32Array, width: number) {
+  const [a, b] = [cell.subarray(0, 3), cell.subarray(3, 6)];
+  const c = dimension === 2 ? [0, 0, 1] : cell.subarray(6, 9);
+  const cross = (u: ArrayLike<number>, v: ArrayLike<number>) =>
+    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]] as const;
+  const dot = (u: ArrayLike<number>, v: ArrayLike<number>) => u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  const edges = [a, b, c].slice(0, dimension);
+  const faces = [cross(b, c), cross(c, a), cross(a, b)].map((face) => face.map((each) => each / dot(a, cross(b, c))));
+  for (let k = 0; k < rows.length; k += width) {
+    const shifts = edges.map((_, e) => Math.floor(dot(rows.subarray(k, k + 3), faces[e])));
+    edges.forEach((edge, e) => {
+      for (let i = 0; i < 3; ++i) rows[k + i] -= shifts[e] * edge[i];
+    });
+  }
+}
+
+/** One grain of no size and one contact. */
+const noPicture: Picture = {
+  dimension: 2,
+  cell: Float64Array.of(1, 0, 0, 0, 1, 0, 0, 0, 1),
+  grains: new Float32Array(grainColumns),
+  contacts: new Float32Array(contactColumns),
+  void_ratio: 0,
+  coordination: 0,
+  stress: new Float64Array(6),
+};
+
+export class GrainView {
+  private readonly gl: WebGL2RenderingContext;
+  private readonly grains: Squares;
+  private readonly bars: Squares;
+  /** Drawn without a graphics card: fewer pixels while the grains move. */
+  private readonly slow: boolean;
+  private colours: { fill: number[]; rim: number[]; paper: number[] } | null = null;
+  private picture: Picture | null = null;
+  private moving = false;
+  private wanted = false;
+  private turned = { azimuth: 0.5, height: 0.35 }; // radians, of the eye; spheres
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
+    if (!gl) throw new Error("WebGL 2 is switched off in this browser; switch it on, or use another one");
+    this.gl = gl;
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
+    this.slow = /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
+    this.grains = new Squares(gl, grainVertex, grainFragment, [["at", 3], ["angle", 1], ["half_axes", 2], ["load", 1]]);
+    this.bars = new Squares(gl, forceVertex, forceFragment, [["from", 3], ["branch", 3], ["force", 1]]);
+    // Drivers compile a shader when it draws for the first time, which must not be while the first test runs.
+    this.picture = noPicture;
+    this.draw();
+    this.picture = null;
+    new ResizeObserver(() => this.redraw()).observe(canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      this.colours = null;
+      this.redraw();
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons === 0 || this.picture?.dimension !== 3) return;
+      this.turned.azimuth -= event.movementX / 150;
+      this.turned.height = Math.min(1.5, Math.max(-1.5, this.turned.height + event.movementY / 150));
+      this.redraw();
+    });
+  }
+
+  /** `moving`: another picture follows. */
+  show(picture: Picture, moving: boolean) {
+    bringHome(picture.cell, picture.dimension, picture.grains, grainColumns);
+    bringHome(picture.cell, picture.dimension, picture.contacts, contactColumns);
+    this.picture = picture;
+    this.moving = moving;
+    this.redraw();
+  }
+
+  /** What is seen, as a PNG: drawn now, since a canvas that was shown is empty. */
+  save(give: (file: Blob) => void) {
+    this.moving = false;
+    this.draw();
+    this.canvas.toBlob((file) => file && give(file), "image/png");
+  }
+
+  private redraw() {
+    if (this.wanted) return;
+    this.wanted = true;
+    requestAnimationFrame(() => {
+      this.wanted = false;
+      this.draw();
+    });
+  }
+
+  private colour() {
+    if (this.colours !== null) return this.colours;
+    const style = getComputedStyle(this.canvas);
+    const colour = (text: string) => [...text.match(/\d+/g)!.slice(0, 3).map((part) => Number(part) / 255), 1];
+    const [fill, rim] = ["--grain", "--grain-rim"].map((name) => colour(style.getPropertyValue(name)));
+    return (this.colours = { fill, rim, paper: colour(style.backgroundColor) });
   }
 
   private draw() {
     const { gl, canvas, picture } = this;
-    const scale = window.devicePixelRatio;
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * scale)));
+    const density = Math.min(2, window.devicePixelRatio) * (this.slow && this.moving ? 0.5 : 1);
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(size * density)));
     // Setting a size, even the same one, gives the canvas new memory.
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.viewport(0, 0, width, height);
+    const { fill, rim, paper } = this.colour();
+    gl.clearColor(paper[0], paper[1], paper[2], 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (!picture) return;
-    ++this.frames;
+    const space = picture.dimension === 3;
+    const axes = space ? this.eye() : [1, 0, 0, 0, 1, 0, 0, 0, 1];
+    const { cell, grains, contacts } = picture;
+    const edges = [0, 3, 6].slice(0, picture.dimension);
+    const centre = [0, 1, 2].map((k) => edges.reduce((sum, e) => sum + cell[e + k] / 2, 0));
+    // Half of what is seen: of the cell's edges along each axis of the eye, which spheres are turned about.
+    const across = space
+      ? [0, 0].fill(edges.reduce((sum, e) => sum + Math.hypot(cell[e], cell[e + 1], cell[e + 2]) ** 2, 0) ** 0.5 * 0.42)
+      : [0, 1].map((k) => edges.reduce((sum, e) => sum + Math.abs(cell[e + k]) / 2, 0));
+    const half = 1.06 * Math.max(across[1], (across[0] * height) / width);
+    const scale = [height / width / half, 1 / half];
+    let [mean, radius] = [0, 0];
+    for (let k = contactColumns - 1; k < contacts.length; k += contactColumns) mean += (contacts[k] * contactColumns) / contacts.length;
+    for (let k = 4; k < grains.length; k += grainColumns) radius += (grains[k] * grainColumns) / grains.length;
+    mean ||= 1;
+    const view = { axes, centre, scale, pixel: (2 * half) / height };
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const [ax, ay, bx, by] = picture.cell;
-    const size = 1.06 * Math.max(ax + Math.abs(bx), by + Math.abs(ay), ((ax + Math.abs(bx)) * canvas.height) / canvas.width);
-    const centre = [(ax + bx) / 2, (ay + by) / 2];
-    const view = [centre[0], centre[1], (2 / size) * (canvas.height / canvas.width), 2 / size];
-    this.drawGrains(picture, view);
-    this.drawForces(picture, view);
+    if (space) gl.enable(gl.DEPTH_TEST);
+    else gl.disable(gl.DEPTH_TEST);
+    // A sphere has some six contacts.
+    this.grains.set({ ...view, fill, rim, shaded: Number(space), mean: 3 * mean });
+    this.grains.draw(grains);
+    if (space || contacts.length === 0) return;
+    this.bars.set({ ...view, mean, width: 0.35 * radius });
+    this.bars.draw(contacts);
   }
 
-  private instances(of: Program, rows: Float32Array, columns: number, view: number[]) {
-    const gl = this.gl;
-    gl.useProgram(of.program);
-    gl.uniform4f(gl.getUniformLocation(of.program, "view"), view[0], view[1], view[2], view[3]);
-    gl.bindVertexArray(of.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, of.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, rows, gl.DYNAMIC_DRAW);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, rows.length / columns);
-  }
-
-  /** The place of a point in the cell, between 0 and its edges. */
-  private home(cell: Float64Array, x: number, y: number): [number, number] {
-    const [ax, ay, bx, by] = cell;
-    const area = ax * by - ay * bx;
-    const u = Math.floor((x * by - y * bx) / area);
-    const v = Math.floor((ax * y - ay * x) / area);
-    return [x - u * ax - v * bx, y - u * ay - v * by];
-  }
-
-  private drawGrains({ cell, grains }: Picture, view: number[]) {
-    const gl = this.gl;
-    const rows = new Float32Array(grains.length / 2);
-    for (let k = 0, to = 0; k < grains.length; k += 6) {
-      const [x, y] = this.home(cell, grains[k], grains[k + 1]);
-      rows[to++] = x;
-      rows[to++] = y;
-      rows[to++] = grains[k + 2];
-    }
-    gl.useProgram(this.discs.program);
-    const style = getComputedStyle(this.canvas);
-    const channel = (name: string) => style.getPropertyValue(name).split(",").map((part) => Number(part) / 255);
-    const [fill, rim] = [channel("--grain"), channel("--grain-rim")];
-    gl.uniform4f(gl.getUniformLocation(this.discs.program, "fill"), fill[0], fill[1], fill[2], 1);
-    gl.uniform4f(gl.getUniformLocation(this.discs.program, "rim"), rim[0], rim[1], rim[2], 1);
-    this.instances(this.discs, rows, 3, view);
-  }
-
-  private drawForces({ cell, contacts, grains }: Picture, view: number[]) {
-    if (contacts.length === 0) return;
-    let mean = 0;
-    for (let k = 4; k < contacts.length; k += 6) mean += (contacts[k] * 6) / contacts.length;
-    const rows = new Float32Array((contacts.length / 6) * 5);
-    for (let k = 0, to = 0; k < contacts.length; k += 6) {
-      const [x, y] = this.home(cell, contacts[k], contacts[k + 1]);
-      rows[to++] = x;
-      rows[to++] = y;
-      rows[to++] = contacts[k + 2];
-      rows[to++] = contacts[k + 3];
-      rows[to++] = Math.min(1.2, contacts[k + 4] / (4 * mean || 1));
-    }
-    const gl = this.gl;
-    let radius = 0;
-    for (let k = 2; k < grains.length; k += 6) radius += (grains[k] * 6) / grains.length;
-    gl.useProgram(this.bars.program);
-    gl.uniform1f(gl.getUniformLocation(this.bars.program, "width"), 0.35 * radius);
-    this.instances(this.bars, rows, 5, view);
+  /** Rows right, up and towards the eye, as the columns of WebGL; z is up. */
+  private eye() {
+    const { azimuth, height } = this.turned;
+    const [s, c, up, level] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(height), Math.cos(height)];
+    const [right, above, towards] = [[c, s, 0], [s * up, -c * up, level], [s * level, -c * level, up]];
+    return [0, 1, 2].flatMap((k) => [right[k], above[k], towards[k]]);
   }
 }

@@ -5,10 +5,11 @@ import { colours, CurveView, type Curve } from "./curves";
 import { csvOf, give } from "./files";
 import { formOf, SetUpForm } from "./form";
 import { GrainView } from "./grains";
-import type { Packed, Picture, Strength, Tested } from "./messages";
+import { grainColumns, type Packed, type Picture, type Strength, type Tested } from "./messages";
 import { drawCircles, type Circle } from "./mohr";
 import { drawEnvelope, ProbePad } from "./probe";
-import { fragmentOf, fromFragment, mistakes, protocolOf, recipeOf, usual, type SetUp } from "./setup";
+import { seldom } from "./seldom";
+import { dimensionOf, fragmentOf, fromFragment, mistakes, protocolOf, recipeOf, usual, type SetUp } from "./setup";
 import { words } from "./words";
 
 const f = words.fields;
@@ -17,12 +18,12 @@ document.querySelector("#page")!.innerHTML = `
   <header><h1>${words.title}</h1><p>${words.intro}</p></header>
   <main>${formOf()}
     <section><h2>${words.grainsTitle}</h2><canvas id="grains" role="img" aria-label="${words.grainsNone}"></canvas>
-      <p class="soft" id="state">${words.grainsNone}</p><small>${words.grainsText}</small></section>
+      <p class="soft" id="state">${words.grainsNone}</p><small id="seen">${words.grainsText}</small></section>
     <section><h2>${words.curve}</h2><div class="curve" id="curve"></div><ul class="key" id="key"></ul></section>
     <section><h2>${words.mohr}</h2><div id="mohr">${words.mohrNone}</div><p class="strength" id="strength"></p><small id="scatter"></small></section>
     <section id="whatif"><h2>${words.whatIf}</h2><p class="soft">${words.whatIfText}</p>
       <label for="from">${f.from} <output id="fromstrain"></output><input id="from" type="range" min="0" max="0" value="0" disabled></label>
-      <label for="friction">${f.whatIf} <output id="angle">10</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
+      <label for="friction">${f.whatIf} <output id="angle">10°</output><input id="friction" type="range" min="0" max="45" value="10" disabled></label>
       <button id="fork" type="button" disabled>${words.whatIfRun}</button></section>
     <section><h2>${words.probe}</h2><p class="soft">${words.probeText}</p>
       <div class="pads"><div class="pad" id="pad" tabindex="0" role="application"></div><div class="envelope" id="envelope"></div></div>
@@ -46,33 +47,46 @@ const curveView = new CurveView(part("curve"));
 const pad = new ProbePad(part("pad"));
 const form = new SetUpForm(document.querySelector("form")!, () => wrong([]));
 
-/** What the page shows of its tests. */
-interface Finished {
-  circle: Circle;
-  pressure: number;
-  seed: number;
-}
 let setUp: SetUp = usual();
 let curves: Curve[] = [];
-let finished: Finished[] = [];
+/** The circle of failure of each test, in the order of the tests; null of one that has none (yet). */
+let circles: (Circle | null)[] = [];
 let resolved = { recipe: "", protocol: "" };
 /** The laboratory whose grains are shown; it stays for what comes after a test. */
 let shown: Client | null = null;
 let others: Client[] = [];
+/** Made while the page is read: its WebAssembly is compiled by the time that a test begins. */
+let spare: Client | null = new Client();
 let running = false;
+let picture: Picture | null = null;
 
-function show(picture: Picture) {
-  grains.show(picture);
-  const text = words.grainsLabel(picture.grains.length / 6, picture.void_ratio, picture.coordination);
+const tellState = seldom(300, () => {
+  if (picture === null) return;
+  const text = words.grainsLabel(picture.grains.length / grainColumns, picture.void_ratio, picture.coordination);
   part("state").textContent = text;
   part("grains").setAttribute("aria-label", text);
+});
+
+function show(next: Picture, moving = false) {
+  if (next.dimension !== picture?.dimension) {
+    part("seen").textContent = next.dimension === 3 ? words.spheresText : words.grainsText;
+    part("grains").classList.toggle("turns", next.dimension === 3);
+  }
+  grains.show((picture = next), moving);
+  tellState();
 }
 
+function curveOf(name: string, dashed: boolean): Curve {
+  return { name, dashed, colour: colours[curves.length % colours.length], rows: [] };
+}
+
+/** Their names, once they are known, and what they hold so far. */
 function showCurves() {
   curveView.show(setUp.test, curves);
-  part("key").innerHTML = curves
-    .map((curve, k) => `<li><i class="${curve.dashed ? "dashed" : ""}" style="color:${colours[k % colours.length]}"></i>${curve.name}</li>`)
-    .join("");
+  const names = curves.map(
+    ({ name, dashed, colour }) => `<li><i class="${dashed ? "dashed" : ""}" style="color:${colour}"></i>${name}</li>`,
+  );
+  if (part("key").innerHTML !== names.join("")) part("key").innerHTML = names.join("");
 }
 
 function allow(yes: boolean) {
@@ -88,33 +102,40 @@ function allow(yes: boolean) {
 
 /** Asked of a laboratory at rest: one that tests would answer only at its end. */
 async function showStrength(client: Client) {
-  if (finished.length === 0 || setUp.test === "isotropic") return;
-  const circles = finished.map(({ circle }) => circle);
+  if (setUp.test === "isotropic") return;
+  const found = circles.filter((circle) => circle !== null);
+  const usable = found.filter(({ s, t }) => Number.isFinite(s / t));
+  if (usable.length === 0) return void (part("scatter").textContent = found.length > 0 ? words.tooShort : "");
   const { friction_angle, standard_error, Nq } = await client.ask<Strength>({
     do: "strength",
-    circles: circles.flatMap(({ s, t }) => [s, t]),
+    circles: usable.flatMap(({ s, t }) => [s, t]),
   });
-  drawCircles(part("mohr"), circles, friction_angle);
+  drawCircles(part("mohr"), usable, friction_angle);
   part("strength").textContent = words.strength(friction_angle, standard_error, Nq);
-  part("scatter").textContent = circles.length > 1 ? words.scatter(circles.length) : words.oneTest;
+  part("scatter").textContent = usable.length > 1 ? words.scatter(usable.length) : words.oneTest;
+}
+
+interface Job {
+  number: number;
+  pressure: number;
+  seed: number;
 }
 
 /** One test from its packing to its end, in a laboratory of its own. */
-async function oneTest(client: Client, seed: number, pressure: number, watched: boolean) {
-  const curve: Curve = { name: `${pressure} kPa${setUp.seeds > 1 ? `, seed ${seed}` : ""}`, dashed: false, rows: [] };
+async function oneTest(client: Client, { number, seed, pressure }: Job, watched: boolean) {
+  const curve = curves[number];
   const packed = await client.ask<Packed>({ do: "pack", recipe: recipeOf(setUp, seed, pressure) }, (note) => {
     if (watched && "draw" in note) status(words.packing(note.draw, note.voidRatio));
   });
-  if (watched) show(await client.ask<Picture>({ do: "picture" }));
-  curves.push(curve);
+  if (watched) show(await client.ask<Picture>({ do: "picture" }), true);
   const tested = await client.ask<Tested>({ do: "run", protocol: protocolOf(setUp, pressure), forks: 10 }, (note) => {
-    if ("picture" in note && watched) show(note.picture);
+    if ("picture" in note && watched) show(note.picture, true);
     if (!("rows" in note)) return;
     curve.rows.push(...note.rows);
     showCurves();
   });
   if (watched) resolved = { recipe: packed.recipe, protocol: tested.protocol ?? "" };
-  finished.push({ circle: { s: tested.peak_s / 1e3, t: tested.peak_t / 1e3 }, pressure, seed });
+  circles[number] = { s: tested.peak_s / 1e3, t: tested.peak_t / 1e3, colour: curve.colour };
 }
 
 async function runAll() {
@@ -122,22 +143,25 @@ async function runAll() {
   wrong(found);
   if (found.length > 0) return;
   endAll();
-  [curves, finished] = [[], []];
+  [curves, circles] = [[], []];
   drawCircles(part("mohr"), [], 0);
   part("strength").textContent = part("scatter").textContent = "";
   history.replaceState(null, "", fragmentOf(setUp));
-  const jobs = setUp.pressures.flatMap((pressure) =>
-    Array.from({ length: setUp.seeds }, (_, k) => ({ pressure, seed: k + 1 })),
-  );
+  const jobs: Job[] = setUp.pressures
+    .flatMap((pressure) => Array.from({ length: setUp.seeds }, (_, k) => ({ pressure, seed: k + 1 })))
+    .map((job, number) => ({ ...job, number }));
+  for (const { pressure, seed } of jobs)
+    curves.push(curveOf(`${pressure} kPa${setUp.seeds > 1 ? `, seed ${seed}` : ""}`, false));
+  showCurves();
   const all = jobs.length;
   const begin = performance.now();
-  shown = new Client();
+  [shown, spare] = [spare ?? new Client(), null];
   others = Array.from({ length: Math.min(all - 1, Math.max(1, (navigator.hardwareConcurrency || 2) - 1), 7) }, () => new Client());
   allow(false);
   const work = async (client: Client) => {
     for (let job = jobs.shift(); job; job = jobs.shift()) {
-      await oneTest(client, job.seed, job.pressure, client === shown);
-      status(words.testing(finished.length, all));
+      await oneTest(client, job, client === shown);
+      status(words.testing(circles.filter(Boolean).length, all));
       await showStrength(client);
     }
   };
@@ -171,13 +195,13 @@ async function afterTest() {
 async function goOn() {
   if (shown === null || running) return;
   const angle = Number(part<HTMLInputElement>("friction").value);
-  const curve: Curve = { name: `${angle}° from ${part("fromstrain").textContent}`, dashed: true, rows: [] };
+  const curve = curveOf(`${angle}° from ${part("fromstrain").textContent}`, true);
   curves.push(curve);
   allow(false);
   try {
     const from = Number(part<HTMLInputElement>("from").value);
     await shown.ask<Tested>({ do: "fork", from, friction: Math.tan((angle * Math.PI) / 180) }, (note) => {
-      if ("picture" in note) show(note.picture);
+      if ("picture" in note) show(note.picture, true);
       if (!("rows" in note)) return;
       curve.rows.push(...note.rows);
       showCurves();
@@ -203,8 +227,8 @@ async function giveFile(kind: string) {
   }
   if (kind === "test") give("test.toml", resolved.protocol, "application/toml");
   if (kind === "soil") give("soil.toml", resolved.recipe, "application/toml");
-  if (kind === "curve") give("curves.csv", csvOf(curves), "text/csv");
-  if (kind === "picture") part<HTMLCanvasElement>("grains").toBlob((blob) => blob && give("grains.png", blob, "image/png"));
+  if (kind === "curve") give("curves.csv", csvOf(curves, dimensionOf(setUp)), "text/csv");
+  if (kind === "picture") grains.save((file) => give("grains.png", file, "image/png"));
   if (kind === "specimen" && shown !== null) {
     const { bytes } = await shown.ask<{ bytes: Uint8Array<ArrayBuffer> }>({ do: "save" });
     give("specimen.rvesnap", bytes, "application/octet-stream");
@@ -218,7 +242,7 @@ document.querySelector("form")!.addEventListener("submit", (event) => {
 part("stop").addEventListener("click", endAll);
 part("fork").addEventListener("click", () => void goOn());
 part<HTMLInputElement>("friction").addEventListener("input", (event) => {
-  part("angle").textContent = (event.target as HTMLInputElement).value;
+  part("angle").textContent = `${(event.target as HTMLInputElement).value}°`;
 });
 part("envelopes").addEventListener("click", async () => {
   if (shown === null) return;

@@ -1,15 +1,17 @@
 /** What page and worker say to each other. */
 export interface Picture {
-  cell: Float64Array; // a_x, a_y, b_x, b_y, m
-  grains: Float64Array; // x, y, r, angle, a, b of each
-  contacts: Float64Array; // x, y, branch x, branch y, force, slides: of each
+  dimension: number;
+  cell: Float64Array; // three edges, x, y, z of each, m
+  grains: Float32Array; // x, y, z, angle, half axes a and b, sum of the pressing forces: of each
+  contacts: Float32Array; // x, y, z, branch x, y, z, force: of each
   void_ratio: number;
   coordination: number;
-  stress: Float64Array; // xx, yy, xy, Pa, tension positive
+  stress: Float64Array; // xx, yy, zz, yz, xz, xy, Pa, tension positive
 }
+export const [grainColumns, contactColumns] = [7, 7];
 
 /** Columns of a record. */
-export const column = { stage: 0, strain: 1, xx: 2, yy: 3, xy: 4, p: 5, q: 6, volume: 7, held: 8 } as const;
+export const column = { stage: 0, strain: 1, xx: 2, yy: 3, zz: 4, yz: 5, xz: 6, xy: 7, p: 8, q: 9, volume: 10, held: 11 } as const;
 
 export type Call =
   | { do: "pack"; recipe: string }
@@ -27,10 +29,8 @@ export interface Packed { void_ratio: number; draw: number; preparation_friction
 export interface Tested {
   events: string[];
   records: number;
-  peak_s: number;
+  peak_s: number; // Pa; NaN of a test at constant volume that is too short
   peak_t: number;
-  peak_strain: number;
-  friction_angle: number;
   protocol?: string;
   strain?: number;
 }

@@ -1,10 +1,10 @@
 /** Mohr circles of the largest stress of each test, and the line through the origin that they make. */
-import { colours } from "./curves";
 import { words } from "./words";
 
 export interface Circle {
   s: number; // kPa
   t: number;
+  colour: string;
 }
 
 export function drawCircles(place: HTMLElement, circles: Circle[], angle: number) {
@@ -20,9 +20,9 @@ export function drawCircles(place: HTMLElement, circles: Circle[], angle: number
   const x = (value: number) => left + value * scale;
   const y = (value: number) => height - below - value * scale;
   const arcs = circles.map(
-    ({ s, t }, k) =>
+    ({ s, t, colour }) =>
       `<path d="M${x(s - t)} ${y(0)} A${t * scale} ${t * scale} 0 0 1 ${x(s + t)} ${y(0)}" fill="none" stroke="${
-        colours[k % colours.length]
+        colour
       }" stroke-width="2"/>`,
   );
   const rise = Math.tan((angle * Math.PI) / 180);

@@ -17,6 +17,10 @@ export function usual(): SetUp {
   return { ...soils.dense, preset: "dense", grains: 400, test: "biaxial", pressures: [100], strain: 10, seeds: 1 };
 }
 
+/** What a set-up is tested in: a plane, or space. */
+export const dimensionOf = (setUp: { shape: Soil["shape"] }) => (setUp.shape === "sphere" ? 3 : 2);
+export const testsOf = (setUp: SetUp): Record<TestKind, string> => (dimensionOf(setUp) === 3 ? words.testsInSpace : words.tests);
+
 /** Numbers of the set-up with what is allowed; beyond these the page would run for hours or the laws do not hold. */
 export const ranges: Partial<Record<keyof SetUp, [number, number]>> = {
   grains: [50, 3000],
@@ -48,7 +52,7 @@ export function mistakes(setUp: SetUp): string[] {
   if (setUp.pressures.length === 0 || setUp.pressures.length > 10) check(words.fields.pressures, NaN, 1, 10000);
   for (const pressure of setUp.pressures) check(words.fields.pressures, pressure, 1, 10000);
   const ordered =
-    setUp.grading === "sieve" ? setUp.d10 <= setUp.d50 && setUp.d50 <= setUp.d60 : setUp.smallest < setUp.largest;
+    setUp.grading === "sieve" ? setUp.d10 <= setUp.d50 && setUp.d50 <= setUp.d60 : setUp.smallest <= setUp.largest;
   if (!ordered) found.push(words.order);
   return found;
 }
@@ -60,24 +64,30 @@ export function recipeOf(setUp: SetUp, seed: number, pressure: number): string {
       : `grading = "uniform"\nsmallest_radius_m = ${setUp.smallest / 2000}\nlargest_radius_m = ${setUp.largest / 2000}`;
   // Ten grains thick, as the specimens of discs that the presets are from: the force on a grain grows with the slab.
   const middle = setUp.grading === "sieve" ? setUp.d50 : (setUp.smallest + setUp.largest) / 2;
-  const thickness = (10 * middle) / 1000;
+  const thickness = setUp.shape === "sphere" ? "" : `thickness_m = ${(10 * middle) / 1000}\n`;
+  const outline =
+    setUp.shape === "ellipse"
+      ? `\nsmallest_aspect_ratio = ${setUp.aspect}\nlargest_aspect_ratio = ${setUp.aspect}\nbedding_angle_deg = 0\nbedding_spread_deg = 30`
+      : "";
+  const preparation = setUp.shape === "ellipse" && setUp.voidRatio.trim() === "" ? "[preparation]\nfriction = 0.2\n\n" : "";
   const voidRatio = setUp.voidRatio.trim() === "" ? "" : `void_ratio = ${Number(setUp.voidRatio)}\n`;
   const rolling = setUp.rolling ? "rolling_stiffness = 1\nrolling_friction = 0.05\n" : "";
+  const [law, second] =
+    setUp.shape === "sphere" ? ["hertz_mindlin", "poisson_ratio = 0.25"] : ["linear", `stiffness_ratio = ${setUp.stiffnessRatio}`];
   return `[pack]
 name = "${setUp.name}"
-shape = "disc"
+shape = "${setUp.shape}"
 number = ${setUp.grains}
 seed = ${seed}
-thickness_m = ${thickness}
-
+${thickness}
 [grains]
-${grading}
+${grading}${outline}
 
-[target]
+${preparation}[target]
 pressure_Pa = ${pressure * 1000}
 ${voidRatio}
 [contact]
-law = "linear"
+law = "${law}"
 rolling = ${setUp.rolling}
 
 [damping]
@@ -87,7 +97,7 @@ local = 0.1
 name = "sand"
 density_kg_m3 = 2650
 young_modulus_Pa = ${setUp.modulus * 1e6}
-stiffness_ratio = 0.5
+${second}
 friction_angle_deg = ${setUp.friction}
 ${rolling}`;
 }
@@ -95,15 +105,16 @@ ${rolling}`;
 export function protocolOf(setUp: SetUp, pressure: number): string {
   const strain = setUp.strain / 100;
   const every = strain / 200;
-  const head = `[test]\nname = "${words.tests[setUp.test]}"\ndimension = 2\npressure_Pa = ${pressure * 1000}\n
+  const axis = dimensionOf(setUp) === 3 ? "z" : "y";
+  const head = `[test]\nname = "${testsOf(setUp)[setUp.test]}"\ndimension = ${dimensionOf(setUp)}\npressure_Pa = ${pressure * 1000}\n
 [loading]\nmode = "quasi_static"\n
 [solver]\ntarget_unbalanced = 1e-3\nmax_overlap_ratio = 0.5\n
 [[stage]]\nkind = "isotropic"\n\n[[stage]]\n`;
   switch (setUp.test) {
     case "biaxial":
-      return `${head}kind = "compression"\naxis = "y"\nto_strain = ${strain}\nrecord_every = ${every}\nlateral = "constant_stress"\n`;
+      return `${head}kind = "compression"\naxis = "${axis}"\nto_strain = ${strain}\nrecord_every = ${every}\nlateral = "constant_stress"\n`;
     case "undrained":
-      return `${head}kind = "compression"\naxis = "y"\nto_strain = ${strain}\nrecord_every = ${every}\nlateral = "constant_volume"
+      return `${head}kind = "compression"\naxis = "${axis}"\nto_strain = ${strain}\nrecord_every = ${every}\nlateral = "constant_volume"
   [[stage.until]]\n  quantity = "p_over_first"\n  below = 1e-3\n`;
     case "shear":
       return `${head}kind = "simple_shear"\nto_strain = ${strain}\nrecord_every = ${every}\nnormal = "constant_volume"\n`;
@@ -125,7 +136,7 @@ export function fromFragment(fragment: string): SetUp | null {
     const all = usual();
     for (const [key, value] of Object.entries(all)) if (typeof read[key] !== typeof value) return null;
     const setUp = { ...all, ...read } as SetUp;
-    const known = setUp.preset in soils && setUp.test in words.tests && Array.isArray(setUp.pressures);
+    const known = setUp.preset in soils && setUp.test in words.tests && ["disc", "ellipse", "sphere"].includes(setUp.shape) && Array.isArray(setUp.pressures);
     const plain = /^[\w .,()-]*$/.test(setUp.name);
     return known && plain && mistakes(setUp).length === 0 ? setUp : null;
   } catch {

@@ -13,13 +13,13 @@ const ready = new Promise<WebAssembly.Module>((resolve) => (start = resolve)).th
   });
   return { module, laboratory: new module.Laboratory() };
 });
-const betweenPictures = 33; // ms
+const betweenPictures = 20; // ms
 
 self.onmessage = async (event: MessageEvent<{ id: number; call: Call } | { module: WebAssembly.Module }>) => {
   if ("module" in event.data) return start(event.data.module);
   const { id, call } = event.data;
-  const say = (message: FromWorker) => self.postMessage(message);
-  const note = (told: Note) => say({ id, note: told });
+  const say = (message: FromWorker, moved: Transferable[] = []) => self.postMessage(message, { transfer: moved });
+  const note = (told: Note, moved: Transferable[] = []) => say({ id, note: told }, moved);
   try {
     const { module, laboratory } = await ready;
     let rows: Float64Array[] = [];
@@ -29,7 +29,8 @@ self.onmessage = async (event: MessageEvent<{ id: number; call: Call } | { modul
       const now = performance.now();
       if (now - shown < betweenPictures) return;
       shown = now;
-      note({ picture: laboratory.picture() as unknown as Picture });
+      const picture = laboratory.picture() as unknown as Picture;
+      note({ picture }, [picture.cell.buffer, picture.grains.buffer, picture.contacts.buffer]);
       note({ rows });
       rows = [];
     };
