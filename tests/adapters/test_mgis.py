@@ -144,7 +144,8 @@ class Mgis(unittest.TestCase):
             self.close(point.tangent, np.array(columns).T, 1e-5)
 
     def test_spheres_in_axial_symmetry(self) -> None:
-        path = [np.eye(3) + k * np.diag([2.0**-14, -(2.0**-12), 2.0**-13]) for k in (1, 2)]
+        # Of a strain of 2^-12 what the start leaves of motion may still be above what the second step allows.
+        path = [np.eye(3) + k * np.diag([2.0**-16, -(2.0**-14), 2.0**-15]) for k in (1, 2)]
         sigma, _ = reference(2, *path)
         self.close(stepped(finite(2, "Axisymmetrical"), *path).stress[:2, :2], (sigma + sigma.T)[:2, :2] / 2, 1e-9)
         self.assertAlmostEqual(stepped(finite(2, "Axisymmetrical"), *path).stress[2, 2], sigma[2, 2], delta=1e-4)

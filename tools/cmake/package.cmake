@@ -114,6 +114,7 @@ add_custom_target(rvelab_packaged DEPENDS ${packaged})
 # compiled in; examples and notebooks.
 file(GLOB_RECURSE readmes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS include/*README.md rvelab/*README.md
      protocols/*README.md tests/*README.md tools/*README.md tools/bench/*.md tools/manual/pages/*.md)
+list(FILTER readmes EXCLUDE REGEX node_modules)  # of a page that was built here
 foreach(readme IN LISTS readmes ITEMS README.md CHANGELOG.md CITATION.cff)
   get_filename_component(place ${readme} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${place} COMPONENT program)

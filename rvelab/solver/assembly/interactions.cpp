@@ -234,6 +234,8 @@ void derive_interactions(const Model& model, PairTable& pairs) {
   std::size_t row = pairs.padded();
   pairs.force.assign((row + interaction_rows(pairs)) * std::size_t(force_row_length(model.dimension())), 0.0);
   for (InteractionTable& t : pairs.interactions) {
+    if (model.kernels_at(Loading::quasi_static).interactions[t.kind] == nullptr)
+      throw InputError("this build has no kernels of interactions; use the program");
     t.row_at = row;
     row += t.padded();
     t.row_i.resize(t.padded());
@@ -254,10 +256,8 @@ void derive_interactions(const Model& model, PairTable& pairs) {
 namespace {
 
 void run(const Model& model, const InteractionKernel* kernels, const StepConstants& constants, Assembly& assembly) {
-  for (InteractionTable& t : assembly.pairs.interactions) {
-    if (kernels[t.kind] == nullptr) throw InputError("this build has no kernels of interactions; use the program");
+  for (InteractionTable& t : assembly.pairs.interactions)
     kernels[t.kind](constants, arrays_of(model, assembly.pairs, t), assembly.rows.data(), 0, long(t.padded()));
-  }
 }
 
 }  // namespace
