@@ -132,9 +132,6 @@ int answer(int argc, char** argv) {
     return fail_without_memory();
   } catch (const std::filesystem::filesystem_error& error) {
     return fail_at_path(error);
-  } catch (const std::system_error& error) {
-    return fail(run_failed, "the system refuses a thread or a file (" + error.code().message() +
-                                "); lower --threads, or raise the limits (ulimit -u, ulimit -v, ulimit -n)");
   } catch (const std::exception& error) {
     return fail(run_failed, "a fault of rvelab itself (" + std::string(error.what()) +
                                 "); please report it with the command and its input files");

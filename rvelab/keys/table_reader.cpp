@@ -123,11 +123,11 @@ const toml::node* TableReader::find(const Key& key) {
 
 void TableReader::mistake(const std::string& name, const std::string& text) {
   const toml::node* node = table_.get(name);
-  if (node == nullptr) {
-    errors_.push_back({line_, where_ + "." + name + " " + text});
-  } else {
-    errors_.push_back(key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text));
-  }
+  const KeyError error = node == nullptr
+                             ? KeyError{line_, where_ + "." + name + " " + text}
+                             : key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text);
+  const bool told = !errors_.empty() && errors_.back().line == error.line && errors_.back().message == error.message;
+  if (!told) errors_.push_back(error);  // of several entries of a list once
 }
 
 void TableReader::doubt(const std::string& name, const std::string& text) {

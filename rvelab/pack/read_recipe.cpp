@@ -92,6 +92,7 @@ void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
 
 /// Half axes and exponents of superellipsoids; of others none may be given.
 void read_solid(TableReader& reader, GrainFraction& fraction, Shape shape, bool ellipsoids) {
+  const std::size_t mistakes = reader.mistakes();
   const std::vector<double> half = reader.numbers("half_axes", "1", {0, 1e6, true, false},
                                                   "superellipsoids: half axes along x, y, z of the shape, of which the "
                                                   "ratios count; radii of the grading are those of the sphere of the "
@@ -113,7 +114,7 @@ void read_solid(TableReader& reader, GrainFraction& fraction, Shape shape, bool 
   if (!ellipsoids && exponents.size() != 2)
     reader.mistake("exponents", exponents.empty() ? "is missing; allowed: two numbers, as [4, 4]; add it"
                                                   : "is not two numbers; allowed: as [4, 4]; correct it");
-  if (half.size() != 3 || (!ellipsoids && exponents.size() != 2)) return;
+  if (reader.mistakes() > mistakes) return;
   fraction.half_axes = {half[0], half[1], half[2]};
   if (!ellipsoids) {
     fraction.exponent_xy = exponents[0];

@@ -1,4 +1,4 @@
-// The cases of matrix.toml, and the experiments that they choose from.
+// The cases of matrix.toml, the experiments that they choose from, and what runs them.
 #pragma once
 
 #include <map>
@@ -46,5 +46,14 @@ std::vector<Experiment> number_experiments();
 
 /// matrix.toml, or another file. Throws what is wrong with it.
 std::vector<Case> read_matrix(const std::string& path = RVELAB_SOURCE_DIR "/tests/extreme/matrix.toml");
+
+struct Result {
+  const Case* asked = nullptr;
+  Answer answer;
+  double seconds = 0;  ///< processor time
+};
+
+/// All results, in the order of the cases. A process that crashes, hangs or runs out of memory is a result, WRONG.
+std::vector<Result> run(const std::vector<Case>& cases, unsigned at_a_time = 1);
 
 }  // namespace rvelab::test

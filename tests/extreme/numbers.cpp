@@ -11,7 +11,6 @@
 #include "rvelab/solver/kernels/configuration.hpp"
 #include "tests/extreme/matrix.hpp"
 #include "tests/extreme/specimens.hpp"
-#include "tests/extreme/tested.hpp"
 
 namespace rvelab::test {
 
@@ -144,10 +143,9 @@ void require_refusal(const std::string& what, Rve& rve, const std::function<void
 
 void no_target(Rve& rve, double dt, Verdict& verdict) {
   MixedTarget good;
-  good.rows = {{Matrix3::Zero(), entry(0, 0, 1), -100, 1000}};
+  good.rows = {stress_row(0, 0, -100, 1000)};
   for (int i = 0; i < rve.cell().dimension; ++i)
-    for (int k = std::max(i, 1); k < rve.cell().dimension; ++k)
-      good.rows.push_back({entry(i, k, 0.5) + entry(k, i, 0.5), Matrix3::Zero(), 0, 0});
+    for (int k = std::max(i, 1); k < rve.cell().dimension; ++k) good.rows.push_back(strain_row(i, k, 0));
   for (const double bad : {not_a_number, infinity}) {
     std::vector<MixedTarget> targets(6, good);
     targets[0].rows[0].value = bad;

@@ -1,4 +1,4 @@
-#include "tests/extreme/runner.hpp"
+// Runs cases, each in a process of its own with limits on processor time and memory, several at a time.
 
 #include <signal.h>
 #include <sys/mman.h>
@@ -15,6 +15,7 @@
 #include <new>
 
 #include "rvelab/error.hpp"
+#include "tests/extreme/matrix.hpp"
 
 // Sanitizers reserve terabytes of addresses: there the resident memory is looked at once a case has ended. They are
 // slow.
@@ -65,94 +66,80 @@ void limit(int resource, double soft, double hard) {
   setrlimit(resource, &wanted);
 }
 
-class Child {
- public:
-  explicit Child(const Case& one) : case_(&one) {
-    void* shared = mmap(nullptr, sizeof(Left), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) throw Error("no memory is left for a case");
-    left_ = new (shared) Left;
-    process_ = fork();
-    if (process_ < 0) throw Error("no process could be started for a case");
-    if (process_ == 0) answer();
-    setpgid(process_, process_);  // in both, so that neither has to wait for the other
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() { munmap(left_, sizeof(Left)); }
-
-  pid_t process() const { return process_; }
-
-  /// Of a process that has ended.
-  Result result(int status, const rusage& used) const {
-    ::kill(-process_, SIGKILL);  // whatever it has started itself
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    Result found{case_, {}, seconds(used.ru_utime) + seconds(used.ru_stime)};
-    std::string& text = found.answer.status;
-    if (WIFSIGNALED(status)) {
-      const int number = WTERMSIG(status);
-      text = number == SIGXCPU || number == SIGALRM ? "time limit" : "signal " + std::to_string(number);
-    } else if (WEXITSTATUS(status) != 0) {
-      text = "exit code " + std::to_string(WEXITSTATUS(status));
-    } else if (RVELAB_SANITIZED && double(used.ru_maxrss) > 1024 * case_->memory_MiB) {
-      text = "memory limit";
-    } else if (!left_->answered) {
-      text = "no answer";
-    } else {
-      found.answer = {left_->outcome, left_->status, left_->error, left_->hash};
-    }
-    return found;
-  }
-
- private:
-  [[noreturn]] void answer() const {
-    setpgid(0, 0);                     // so that its own children can be ended with it
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // it never outlives the test
-    for (int number = 1; number < NSIG; ++number) signal(number, SIG_DFL);
-    const double seconds = std::ceil(case_->seconds * slower_when_sanitized);
-    limit(RLIMIT_CPU, seconds, seconds + 1);
-    limit(RLIMIT_CORE, 0, 0);
-    const double bytes = case_->memory_MiB * 1024 * 1024;
-    if (!RVELAB_SANITIZED) limit(RLIMIT_AS, bytes, bytes);
-    const double longest = clock_over_limit * case_->seconds * slower_when_sanitized;
-    const itimerval by_the_clock{{}, {time_t(longest), suseconds_t(1e6 * (longest - std::floor(longest)))}};
-    setitimer(ITIMER_REAL, &by_the_clock, nullptr);
-    const Answer found = answer_to(*case_);
+/// In the process of the case, which ends with it.
+[[noreturn]] void answer(const Case& one, Left& left) {
+  setpgid(0, 0);                     // so that its own children can be ended with it
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // it never outlives the test
+  for (int number = 1; number < NSIG; ++number) signal(number, SIG_DFL);
+  const double seconds = std::ceil(one.seconds * slower_when_sanitized);
+  limit(RLIMIT_CPU, seconds, seconds + 1);
+  limit(RLIMIT_CORE, 0, 0);
+  const double bytes = one.memory_MiB * 1024 * 1024;
+  if (!RVELAB_SANITIZED) limit(RLIMIT_AS, bytes, bytes);
+  const double longest = clock_over_limit * one.seconds * slower_when_sanitized;
+  const itimerval by_the_clock{{}, {time_t(longest), suseconds_t(1e6 * (longest - std::floor(longest)))}};
+  setitimer(ITIMER_REAL, &by_the_clock, nullptr);
+  const Answer found = answer_to(one);
 #if defined(__SANITIZE_ADDRESS__)
-    if (__lsan_do_recoverable_leak_check() != 0) _exit(1);
+  if (__lsan_do_recoverable_leak_check() != 0) _exit(1);
 #endif
-    left_->outcome = found.outcome;
-    left_->error = found.error;
-    left_->hash = found.hash;
-    std::strncpy(left_->status, found.status.c_str(), sizeof left_->status - 1);
-    left_->answered = true;
-    _exit(0);
-  }
+  left.outcome = found.outcome;
+  left.error = found.error;
+  left.hash = found.hash;
+  std::strncpy(left.status, found.status.c_str(), sizeof left.status - 1);
+  left.answered = true;
+  _exit(0);
+}
 
-  const Case* case_;
-  Left* left_ = nullptr;
-  pid_t process_ = -1;
-};
+/// What became of a process that has ended.
+Answer answer_of(const Case& one, const Left& left, int status, const rusage& used) {
+  Answer found;
+  if (WIFSIGNALED(status)) {
+    const int number = WTERMSIG(status);
+    found.status = number == SIGXCPU || number == SIGALRM ? "time limit" : "signal " + std::to_string(number);
+  } else if (WEXITSTATUS(status) != 0) {
+    found.status = "exit code " + std::to_string(WEXITSTATUS(status));
+  } else if (RVELAB_SANITIZED && double(used.ru_maxrss) > 1024 * one.memory_MiB) {
+    found.status = "memory limit";
+  } else if (!left.answered) {
+    found.status = "no answer";
+  } else {
+    found = {left.outcome, left.status, left.error, left.hash};
+  }
+  return found;
+}
 
 }  // namespace
 
 std::vector<Result> run(const std::vector<Case>& cases, unsigned at_a_time) {
+  const std::size_t bytes = cases.size() * sizeof(Left);
+  void* shared = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) throw Error("no memory is left for the answers");
+  Left* left = new (shared) Left[cases.size()];
   std::vector<Result> results(cases.size());
-  std::map<pid_t, std::pair<std::unique_ptr<Child>, std::size_t>> running;
+  std::map<pid_t, std::size_t> running;
   std::fflush(nullptr);
   for (std::size_t started = 0; started < cases.size() || !running.empty();) {
     if (started < cases.size() && running.size() < at_a_time) {
-      auto child = std::make_unique<Child>(cases[started]);
-      const pid_t process = child->process();
-      running[process] = {std::move(child), started++};
+      const pid_t process = fork();
+      if (process < 0) throw Error("no process could be started for a case");
+      if (process == 0) answer(cases[started], left[started]);
+      setpgid(process, process);  // in both, so that neither has to wait for the other
+      running[process] = started++;
       continue;
     }
     int status = 0;
     rusage used{};
     const auto ended = running.find(wait4(-1, &status, 0, &used));
     if (ended == running.end()) continue;
-    results[ended->second.second] = ended->second.first->result(status, used);
+    const auto [process, k] = *ended;
+    ::kill(-process, SIGKILL);  // whatever it has started itself
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    results[k] = {&cases[k], answer_of(cases[k], left[k], status, used),
+                  seconds(used.ru_utime) + seconds(used.ru_stime)};
     running.erase(ended);
   }
+  munmap(shared, bytes);
   return results;
 }
 

@@ -115,6 +115,11 @@ inline MixedTarget::Row stress_row(int i, int k, double change, double scale) {
   return {Matrix3::Zero(), entry(i, k, 0.5) + entry(k, i, 0.5), change, scale};
 }
 
+/// The same of the strain.
+inline MixedTarget::Row strain_row(int i, int k, double change) {
+  return {entry(i, k, 0.5) + entry(k, i, 0.5), Matrix3::Zero(), change, 0};
+}
+
 /// In 2D the plane part only.
 inline Matrix3 isotropic(int dimension, double strain) {
   return Vector3(strain, strain, dimension == 2 ? 0.0 : strain).asDiagonal();
@@ -183,8 +188,8 @@ inline Specimen gas(int dimension, const std::vector<double>& radii, double soli
 }
 
 /// A gas compressed without friction until its pressure exceeds `pressure` (Pa), at rest; the materials' friction acts
-/// from there on. At rest: the unbalanced ratio is `rest`, or what round-off allows.
-inline Specimen packed(const Specimen& loose, double pressure, double rest = 1e-12) {
+/// from there on. At rest: the unbalanced ratio is 1e-12, or what round-off allows.
+inline Specimen packed(const Specimen& loose, double pressure) {
   std::vector<Material> smooth = loose.materials;
   for (Material& m : smooth) m.friction = 0;
   Specimen s = loose;
@@ -195,12 +200,32 @@ inline Specimen packed(const Specimen& loose, double pressure, double rest = 1e-
     rve.apply(isotropic(d, mean_pressure(rve.stress(), d) < 0.1 * pressure ? -2e-3 : -2e-4), 0);
     rve.relax(1e-3, 20'000);
   }
-  rve.relax(rest, 400'000);
+  rve.relax(1e-12, 400'000);
   rve.zero_velocities();
   rve.set_materials(loose.materials);
   Specimen result = rve.specimen();
   result.state = {};  // reference force and pressure are those of the packing, not of the gas
   return result;
+}
+
+/// Relaxed to that unbalanced ratio, if it is reached within so many sub-steps, and without motion.
+Specimen rested(const Specimen& specimen, double unbalanced, long substeps);
+
+/// The stress after some increments at dt = 0 of so many sub-steps each.
+Matrix3 stress_after(Specimen specimen, const Matrix3& increment, int increments, long substeps);
+
+/// Dashpots of that restitution; none for 1.
+inline void set_restitution(Specimen& s, double restitution) {
+  if (restitution == 1) return;
+  s.damping.dashpot = Dashpot::restitution;
+  s.damping.restitution = restitution;
+}
+
+/// Stiffness for which two grains of that reduced mass (kg) that approach at `speed` (m/s) overlap by that at most (m):
+/// f_n = k overlap, N/m, or k overlap^1.5 (Hertz, N/m^1.5; Landau and Lifshitz, Theory of Elasticity, section 9).
+inline double constant_for(bool hertz, double overlap, double reduced_mass, double speed) {
+  return hertz ? 1.25 * reduced_mass * speed * speed / std::pow(overlap, 2.5)
+               : reduced_mass * speed * speed / (overlap * overlap);
 }
 
 /// `count` radii spread evenly over (1 - spread, 1 + spread).

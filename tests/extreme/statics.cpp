@@ -1,9 +1,7 @@
 // Quasi-static loading of what is no equilibrium any more: a right answer or a flag, never a silent wrong one.
-//
 #include "rvelab/measure/measures.hpp"
 #include "tests/extreme/matrix.hpp"
 #include "tests/extreme/specimens.hpp"
-#include "tests/extreme/tested.hpp"
 
 namespace rvelab::test {
 
@@ -40,15 +38,9 @@ void made_frictionless(const Case& asked, Verdict& verdict) {
   Tested tested(s, verdict);
   for (int k = 0; k < increments; ++k) tested.apply(increment, 0);
   tested.check_laws();
-  const auto resolved = [&](long substeps) {
-    Specimen slow = s;
-    slow.solver.fixed_substeps = substeps / increments;
-    Rve rve(slow);
-    for (int k = 0; k < increments; ++k) rve.apply(increment, 0);
-    return rve.stress();
-  };
   // Two resolved runs must agree: then the way down is one and not a matter of chance.
-  const Matrix3 fine = resolved(100'000), coarser = resolved(40'000);
+  const Matrix3 fine = stress_after(s, increment, increments, 100'000 / increments),
+                coarser = stress_after(s, increment, increments, 40'000 / increments);
   verdict.law("the resolved run is resolved, of p", (fine - coarser).norm() / p, asked.tolerance);
   verdict.agreement("stress against 100,000 sub-steps, of p", (tested.rve().stress() - fine).norm() / p,
                     asked.tolerance);
@@ -66,13 +58,9 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
   const bool all_round = asked("all_round") != 0;
   MixedTarget target;
   for (int i = 0; i < d; ++i)
-    for (int k = i; k < d; ++k) {
-      const Matrix3 component = entry(i, k, 0.5) + entry(k, i, 0.5);
-      if (i == k)
-        target.rows.push_back({Matrix3::Zero(), component, i == 0 || all_round ? 0.5 * p - stress(i, i) : 0, p});
-      else
-        target.rows.push_back({component, Matrix3::Zero(), 0, 0});
-    }
+    for (int k = i; k < d; ++k)
+      target.rows.push_back(i == k ? stress_row(i, i, i == 0 || all_round ? 0.5 * p - stress(i, i) : 0, p)
+                                   : strain_row(i, k, 0));
   const double dt = asked("critical_steps") * tested.rve().critical_time_step();
   if (dt == 0) {
     const auto found = refused(tested.rve(), [&](Rve& r) { r.apply(target, 0); });

@@ -34,7 +34,6 @@ std::vector<Vector3> no_spin(const Rve& rve) { return std::vector<Vector3>(rve.s
 
 /// -(1/V) sum m v v of equal grains of density 2650 kg/m^3 and radius 1 m.
 Matrix3 kinetic_stress(const std::vector<Vector3>& velocity, const Cell& cell) {
-  const double pi = 3.14159265358979323846;
   const double mass = 2650 * (cell.dimension == 2 ? pi * 0.5 : 4 * pi / 3);
   Matrix3 sum = Matrix3::Zero();
   for (const Vector3& v : velocity) sum -= mass * v * v.transpose();
@@ -73,8 +72,7 @@ TEST_CASE("A gas at dt > 0 has the stress of its velocities, n m <v v>", "[extre
     CHECK(response.contact_stress.isZero(0));
     double squares = 0;
     for (const Vector3& v : velocity) squares += v.squaredNorm() / double(velocity.size());
-    const double density = 2650 * (d == 2 ? 3.14159265358979323846 * 0.5 : 4 * 3.14159265358979323846 / 3) *
-                           double(velocity.size()) / rve.cell().volume();
+    const double density = 2650 * (d == 2 ? pi * 0.5 : 4 * pi / 3) * double(velocity.size()) / rve.cell().volume();
     CHECK(mean_pressure(response.stress, d) == Approx(density * squares / d).epsilon(1e-12));
     CHECK(net_momentum(rve).norm() <= 1e-13 * momentum_scale(rve));
   }

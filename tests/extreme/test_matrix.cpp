@@ -11,9 +11,8 @@
 
 #include "rvelab/error.hpp"
 #include "tests/catch.hpp"
-#include "tests/extreme/runner.hpp"
+#include "tests/extreme/matrix.hpp"
 #include "tests/extreme/specimens.hpp"
-#include "tests/extreme/tested.hpp"
 #include "tests/folder.hpp"
 
 using namespace rvelab;

@@ -2,10 +2,8 @@
 #include <sys/resource.h>
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <sstream>
 
 #include "tests/catch.hpp"
@@ -40,13 +38,6 @@ double seconds_for(int n) {
   return seconds;
 }
 
-/// The least of some, so that what else the machine does is left out.
-double least_seconds_for(int n, int repeats) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < repeats; ++k) least = std::min(least, seconds_for(n));
-  return least;
-}
-
 /// The exponent b of time = a number^b, by least squares in the logarithms.
 double exponent(const std::vector<double>& number, const std::vector<double>& seconds) {
   Eigen::MatrixXd of(number.size(), 2);
@@ -65,7 +56,7 @@ TEST_CASE("A million spheres open and deform in memory and time proportional to 
   std::ostringstream table;
   for (const int n : {63, 80, 100}) {  // all beyond the caches
     number.push_back(std::pow(n, 3));
-    seconds.push_back(least_seconds_for(n, n < 60 ? 5 : 1));
+    seconds.push_back(seconds_for(n));
     table << number.back() << ": " << 1e6 * seconds.back() / number.back() << "; ";
   }
   rusage usage{};

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -36,12 +37,6 @@ struct Refused {
   bool unchanged = false;  ///< Rve::save() before and after are the same
 };
 
-/// The solver says of itself that what it returns is not what was asked for.
-inline bool flagged(const Report& report) { return !report.target_held || !report.in_equilibrium; }
-
-/// A message that says what to do or what is allowed, not only what is wrong.
-bool names_remedy(const std::string& message);
-
 /// A hash and the next number (FNV-1a, 64 bits).
 constexpr std::uint64_t empty_hash = 14695981039346656037u;
 std::uint64_t hashed(std::uint64_t hash, std::uint64_t bits);
@@ -57,7 +52,8 @@ class Verdict {
   /// A required refusal: its message, or none if the call was carried out; `unchanged` as in Refused.
   void refusal(const std::string& what, const std::optional<Refused>& found);
 
-  void note(const Report& report) { flagged_ = flagged_ || flagged(report); }
+  /// Whether the solver says of itself that what it returns is not what was asked for.
+  void note(const Report& report) { flagged_ = flagged_ || !report.target_held || !report.in_equilibrium; }
   /// The bits of a number that two builds must agree on are taken into the hash of the answer.
   void bits(std::uint64_t value);
   void bits(const Matrix3& value);
@@ -77,6 +73,41 @@ class Verdict {
   bool flagged_ = false;
   std::string refusal_;
   std::optional<std::uint64_t> hash_;
+};
+
+/// Runs a call that must be refused: the refusal, or none if it was carried out. What is no rvelab::Error goes on.
+std::optional<Refused> refused(Rve& rve, const std::function<void(Rve&)>& call);
+
+/// An RVE under test: every increment must keep what no loading may change.
+class Tested {
+ public:
+  Tested(const Specimen& specimen, Verdict& verdict);
+
+  /// Rve::apply. Throws Refused if the RVE refuses. The volume that the increment asks for is noted.
+  Response apply(const Matrix3& displacement_gradient, double dt);
+  Response apply(const MixedTarget& target, double dt);
+
+  /// The laws of any loading so far: volume = V0 det F (round-off of `increments` products), no grain lost, every place
+  /// and stress a number, overlaps within the limit, and |sigma - sigma^T| <= 1.5 unbalanced p + 1e-9 p at dt = 0.
+  void check_laws();
+  /// The net momentum is zero, of sum m |v'|.
+  void check_momentum();
+
+  Rve& rve() { return rve_; }
+  const Rve& rve() const { return rve_; }
+  double pressure() const;
+
+ private:
+  template <class Increment>
+  Response made(const Increment& increment, double dt);
+
+  Rve rve_;
+  Verdict* verdict_;
+  double volume_, overlap_limit_;
+  std::size_t grains_;
+  long increments_ = 0, substeps_ = 0;
+  bool quasi_static_ = true;
+  Response last_;
 };
 
 }  // namespace rvelab::test

@@ -2,15 +2,11 @@
 #include <cmath>
 
 #include "rvelab/error.hpp"
-#include "rvelab/measure/measures.hpp"
-#include "rvelab/pack/draw.hpp"
 #include "rvelab/pack/read_recipe.hpp"
-#include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/scatter.hpp"
-#include "rvelab/solver/rve.hpp"
 #include "rvelab/specimen/solids.hpp"
-#include "tests/catch.hpp"
 #include "tests/pack/recipes.hpp"
+#include "tests/refusal.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -29,54 +25,28 @@ pack::Recipe recipe_of(std::size_t number, double e, double n) {
   return recipe;
 }
 
-const std::string solid_recipe = R"([pack]
-name = "solids"
-shape = "ellipsoid"
-[grains]
-half_axes = [2.5, 2, 1.6]
-smallest_radius_m = 1e-3
-largest_radius_m = 2e-3
-[target]
-pressure_Pa = 1e5
-[[material]]
-name = "m"
-density_kg_m3 = 2650
-young_modulus_Pa = 1e8
-stiffness_ratio = 0.5
-friction = 0.5
-[contact]
-law = "linear"
-)";
+const std::string solid_recipe =
+    recipe_text("name = \"solids\"\nshape = \"ellipsoid\"\n", "half_axes = [2.5, 2, 1.6]\n");
 
 }  // namespace
 
 TEST_CASE("ellipsoids and superellipsoids are packed to a pressure, at rest, with the volumes of their grading") {
   for (const pack::Recipe& recipe : {recipe_of(40, 2, 2), recipe_of(24, 4, 3)}) {
-    const pack::Draw made = pack::draw(recipe, 1, 0.1, nullptr);
-    REQUIRE(made.at_rest);
-    const Rve rve(made.specimen);
-    const Network network = rve.network();
-    CHECK(std::abs(mean_pressure(rve.stress(), 3) - 1e5) < 100);
-    CHECK(rve.unbalanced_ratio() < 1e-5);
-    CHECK(network.grains.size() == recipe.number);
-    CHECK(coordination_number(network) > 4);  // frictional grains
+    const pack::Draw made = check_packed(recipe);
+    const Network network = Rve(made.specimen).network();
     double solid = 0;
     for (std::size_t g = 0; g < recipe.number; ++g) {
       const Superellipsoid s = superellipsoid_of(made.specimen.grains, g);
       CHECK(s.a / s.c == Approx(1.25 / 0.8).epsilon(1e-12));
       const double r = network.grains[g].radius;
       CHECK(volume_of(s) == Approx(4 * std::acos(-1.0) / 3 * r * r * r).epsilon(1e-12));
-      CHECK(r > recipe.fractions[0].grading.smallest_radius * (1 - 1e-9));
-      CHECK(r < recipe.fractions[0].grading.largest_radius * (1 + 1e-9));
       solid += volume_of(s);
     }
     CHECK(void_ratio(network) == Approx(network.cell.volume() / solid - 1).epsilon(1e-10));
-    // The same bits again, and eight of the cell are that cell, on the way too.
-    CHECK(Rve(pack::draw(recipe, 1, 0.1, nullptr).specimen).save() == rve.save());
+    // Eight of the cell are that cell on the way too.
     Specimen one = made.specimen, eight = pack::repeated(made.specimen, {2, 2, 2});
     one.solver.fixed_substeps = eight.solver.fixed_substeps = 50;
     Rve alone(one), many(eight);
-    CHECK((many.stress() - alone.stress()).norm() < 1e-9 * 1e5);
     Matrix3 gradient = Matrix3::Zero();
     gradient(0, 0) = -5e-5;
     gradient(0, 1) = 3e-5;
@@ -129,6 +99,12 @@ TEST_CASE("a recipe of ellipsoids reads half axes and exponents, and says what i
   refuses({"pack.shape=superellipsoid", "grains.exponents=[4, 40]"}, "exponents");
   refuses({"grains.half_axes=[1, 2]"}, "three numbers");
   refuses({"grains.half_axes=[1, 2, 30]"}, "10 times");
+  for (const char* half : {"grains.half_axes=[1, nan, 2]", "grains.half_axes=[nan, 1, nan]"}) {
+    const std::string said = input_error([&] { pack::parse_recipe(solid_recipe, "solids.toml", {half}); });
+    CAPTURE(said);
+    CHECK(said.find("is not finite") != std::string::npos);
+    CHECK(said.find("grains.half_axes = ") == said.rfind("grains.half_axes = "));  // told once
+  }
   refuses({"pack.shape=sphere"}, "half_axes");
   refuses({"grains.smallest_aspect_ratio=0.5"}, "ellipses");
   refuses({"preparation.method=growth"}, "compression");
