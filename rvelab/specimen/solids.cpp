@@ -2,6 +2,22 @@
 
 namespace rvelab {
 
+std::vector<double> rolling_radii_of(const Grains& grains) {
+  std::vector<double> radii;
+  radii.reserve(grains.size());
+  Superellipsoid last{};
+  double last_rolling = 0;  // of a half axis c of 1
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Superellipsoid s = superellipsoid_of(grains, g), unit = {s.a / s.c, s.b / s.c, 1, s.e, s.n};
+    if (unit.a != last.a || unit.b != last.b || unit.e != last.e || unit.n != last.n) {
+      last = unit;
+      last_rolling = rolling_radius_of(unit);
+    }
+    radii.push_back(s.c * last_rolling);
+  }
+  return radii;
+}
+
 Body body_of_solid(const Grains& grains, std::size_t g) {
   const Superellipsoid shape = superellipsoid_of(grains, g);
   const PrincipalInertia inertia = inertia_of(shape);

@@ -1,6 +1,8 @@
 // Superellipsoids put into a specimen: each grain a body of its own.
 #pragma once
 
+#include <vector>
+
 #include "rvelab/specimen/specimen.hpp"
 #include "rvelab/superellipsoid/body.hpp"
 
@@ -19,6 +21,9 @@ Superellipsoid superellipsoid_of(const Columns& of, std::size_t g) {
 inline Superellipsoid superellipsoid_of(const SuperellipsoidGrain::Own& own) {
   return {own.half_x, own.half_y, own.half_z, own.exponent_xy, own.exponent_z};
 }
+
+/// m, of each grain: a ball of this radius rolls inside (superellipsoid/body.hpp).
+std::vector<double> rolling_radii_of(const Grains& grains);
 
 /// Volume and gyration (about x y z of the shape) that the body of grain g must have.
 Body body_of_solid(const Grains& grains, std::size_t g);

@@ -2,15 +2,14 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
-#include "rvelab/error.hpp"
+#include "rvelab/specimen/body_check.hpp"
+#include "rvelab/specimen/checked_specimen.hpp"
+#include "rvelab/specimen/interaction_check.hpp"
 #include "rvelab/specimen/solids.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 
@@ -25,14 +24,6 @@ using fields::Listed;
 using fields::Path;
 using fields::Rows;
 using fields::Textual;
-
-constexpr const char* remedy = "; correct it, or make the specimen again";
-
-/// As many digits as tell it from the end of a range.
-std::string digits_of(double value) {
-  char digits[32];
-  return {digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr};
-}
 
 /// A range with its unit, and that it holds finite numbers only where one is not.
 std::string words(const Interval& range, const char* unit, double found) {
@@ -54,17 +45,17 @@ constexpr const char* flat_words(InPlane plane) {
 }
 
 /// The numbers of one specimen against the ranges of its fields, and its lists against the number of grains.
-class Ranges {
+class Ranges : CheckedSpecimen {
  public:
-  Ranges(const Specimen& specimen, const std::string& where) : s_(specimen), where_(where) {}
+  explicit Ranges(const CheckedSpecimen& checked) : CheckedSpecimen(checked) {}
 
   template <class Value, class Owner>
   void field(const Path& path, const Value& value, const Field<Owner, Value>& field) const {
     if constexpr (Listed<Value>::is_list) {
-      const std::size_t n = s_.grains.size();
+      const std::size_t n = s.grains.size();
       if (value.size() != n && (field.rows == Rows::per_grain || !value.empty()))
-        refuse(path, " has " + std::to_string(value.size()) + " rows; allowed: " + std::to_string(n) +
-                         ", one for each grain" + (field.rows == Rows::per_grain ? "" : ", or none"));
+        refuse(path.text() + " has " + std::to_string(value.size()) + " rows; allowed: " + std::to_string(n) +
+               ", one for each grain" + (field.rows == Rows::per_grain ? "" : ", or none"));
       for (std::size_t k = 0; k < value.size(); ++k) entry(path, &k, value[k], field);
     } else {
       entry(path, nullptr, value, field);
@@ -76,10 +67,6 @@ class Ranges {
   }
 
  private:
-  [[noreturn]] void refuse(const Path& path, const std::string& what) const {
-    throw InputError(where_ + path.text() + what + remedy);
-  }
-
   template <class Item, class Value>
   void column(const Path& path, const std::vector<Item>& items, const Field<Item, Value>& field) const {
     for (std::size_t k = 0; k < items.size(); ++k) {
@@ -94,7 +81,7 @@ class Ranges {
     if constexpr (!Textual<Entry> && !std::is_same_v<Entry, bool>) {
       typename Layout<Entry>::Scalar scalars[Layout<Entry>::size];
       Layout<Entry>::put(entry, scalars);
-      const bool flat = s_.cell.dimension == 2 && field.plane != InPlane::any;
+      const bool flat = s.cell.dimension == 2 && field.plane != InPlane::any;
       for (std::size_t k = 0; k < Layout<Entry>::size; ++k) {
         const double value = double(scalars[k]);
         const bool in_range = std::isfinite(value) && field.allowed.contains(value);
@@ -112,10 +99,10 @@ class Ranges {
                                  const std::string& allowed) const {
     const std::string name = path.text();
     std::string who;
-    if (row != nullptr && name.starts_with("grains/")) who = " of grain " + std::to_string(s_.grains.id[*row]);
-    if (row != nullptr && name.starts_with("materials/")) who = " of material \"" + s_.materials[*row].name + "\"";
-    refuse(path, (index.empty() ? "" : "[" + index + "]") + who + " = " + digits_of(value) +
-                     " is out of range; allowed: " + allowed);
+    if (row != nullptr && name.starts_with("grains/")) who = " of grain " + std::to_string(s.grains.id[*row]);
+    if (row != nullptr && name.starts_with("materials/")) who = " of material \"" + s.materials[*row].name + "\"";
+    refuse(name + (index.empty() ? "" : "[" + index + "]") + who + " = " + digits_of(value) +
+           " is out of range; allowed: " + allowed);
   }
 
   /// What a law reads is in the range that the law states; what none of this specimen reads is 0, or in that of
@@ -124,7 +111,7 @@ class Ranges {
     const LawParameter* stated = nullptr;
     for (const LawParameter& each : law_parameters()) {
       if (each.value != field.member) continue;
-      const bool read = each.law == s_.contact.law;
+      const bool read = each.law == s.contact.law;
       if (each.parameter.allowed.contains(value) || (!read && value == 0)) {
         if (read) return;
         continue;
@@ -137,27 +124,23 @@ class Ranges {
           path, std::to_string(row), &row, value,
           words(stated->parameter.allowed, stated->parameter.unit, value) + " with contact/law " + name(stated->law));
   }
-
-  const Specimen& s_;
-  const std::string& where_;
 };
 
 /// What fields must be beside one another.
-class Relations {
+class Relations : CheckedSpecimen {
  public:
-  Relations(const Specimen& specimen, const std::string& where) : s(specimen), where_(where) {}
+  explicit Relations(const CheckedSpecimen& checked) : CheckedSpecimen(checked) {}
 
   void check() const {
     check_lists();
     check_grains();
-    check_outlines();
-    check_bodies();
+    check_bodies(*this);
     check_cell();
     check_places();
     check_masses();
     check_deferred();
     check_contacts();
-    check_interactions();
+    check_interactions(*this);
     const long collision_steps = s.solver.collision_steps;
     if (collision_steps > 0 && collision_steps < 5)
       refuse("solver/collision_steps = " + std::to_string(collision_steps) +
@@ -165,15 +148,6 @@ class Relations {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& what) const { advise(what + remedy); }
-  /// The same of what has a remedy of its own.
-  [[noreturn]] void advise(const std::string& what) const { throw InputError(where_ + what); }
-
-  static std::string at(const std::string& field, std::size_t k) { return field + ("[" + std::to_string(k) + "]"); }
-  std::string of_grain(const char* field, std::size_t k) const {
-    return at(field, k) + " of grain " + std::to_string(s.grains.id[k]);
-  }
-
   void check_lists() const {
     const SolverState& state = s.state;
     if (state.masses.mass.size() != state.masses.inverse_inertia.size())
@@ -195,129 +169,6 @@ class Relations {
         refuse(of_grain("grains/material", k) + " = " + std::to_string(g.material[k]) + "; allowed: 0 to " +
                std::to_string(s.materials.size() - 1) + ", a row of materials");
     }
-  }
-
-  /// Lengths and orientation where the grains are not round, and nowhere else.
-  void check_outlines() const {
-    const std::size_t n = s.grains.size();
-    for (int number = 0; number < shape_count; ++number)
-      with_shape(Shape(number), [&](auto is) {
-        using By = typename decltype(is)::By;
-        const bool own = s.shape == decltype(is)::value;
-        if constexpr (!By::round) {
-          each_column_of<By>(
-              [&](const auto& described, const auto& column) {
-                expect_rows<By>((std::string("grains/") + described.dataset).c_str(), column.size(), own ? n : 0);
-              },
-              s.grains);
-          expect_rows<By>("grains/orientation", s.grains.orientation.size(), keeps_axis(s.shape) ? n : 0);
-          for (std::size_t k = 0; own && k < n; ++k) check_outline<By>(k);
-        }
-      });
-    const std::string plural = name(s.shape) + std::string("s");
-    if (!is_round(s.shape) && s.contact.slip != Slip::consistent)
-      refuse(std::string("contact/slip = \"") + name(s.contact.slip) + "\" is for round grains; allowed for " + plural +
-             ": \"consistent\"");
-    if (!has_hertz_curvature(s.shape) && s.contact.hertz_radius != HertzRadius::equivalent)
-      refuse(std::string("contact/hertz_radius = \"") + name(s.contact.hertz_radius) + "\" is for " +
-             names_of_shapes(has_hertz_curvature, true) + "; allowed for " + plural + ": \"equivalent\"");
-  }
-
-  template <class By>
-  void expect_rows(const char* field, std::size_t found, std::size_t allowed) const {
-    if (found != allowed)
-      refuse(std::string(field) + " has " + std::to_string(found) +
-             " rows; allowed: one for each grain where shape is " + By::name + ", else none");
-  }
-
-  template <class By>
-  void check_outline(std::size_t k) const {
-    const Grains& g = s.grains;
-    const OwnValues own = own_of<By>(g, k);
-    if (!By::allowed(own)) {
-      std::string lengths;
-      each_column_of<By>(
-          [&](const auto& described, double value) {
-            lengths += (lengths.empty() ? "grains/" : ", ") + at(described.dataset, k) + " = " + in_words(value);
-          },
-          own);
-      refuse(lengths + " of grain " + std::to_string(g.id[k]) + "; allowed: " + By::allowed_lengths);
-    }
-    if (!(std::abs(g.radius[k] - By::radius(own)) <= 1e-9 * g.radius[k]))
-      refuse(of_grain("grains/radius_m", k) + " = " + in_words(g.radius[k]) + "; that of its " + By::name + " is " +
-             By::radius_in_words + ", " + in_words(By::radius(own)) + " m here");
-    if constexpr (By::rigid) return;
-    const double length = g.orientation[k].norm();
-    if (!(std::abs(length - 1) <= 1e-9))
-      refuse(of_grain("grains/orientation", k) + " has the length " + digits_of(length) +
-             "; allowed: 1, a direction in the plane");
-  }
-
-  /// Bodies (clumps): each grain in one of them, of one material, where its offset says.
-  void check_bodies() const {
-    const std::size_t n = s.grains.size();
-    if (s.members.size() != (s.bodies.empty() ? 0 : n))
-      refuse("members has " + std::to_string(s.members.size()) +
-             " rows; allowed: one for each grain where there are bodies, else none");
-    if (moves_as_body(s.shape) && s.bodies.size() != n)
-      refuse("bodies has " + std::to_string(s.bodies.size()) + " rows; allowed: " + std::to_string(n) +
-             ", one for each grain where shape is " + name(s.shape));
-    if (s.bodies.empty()) return;
-    if (keeps_axis(s.shape))
-      refuse(std::string("bodies of ") + name(s.shape) + "s; allowed: of discs, spheres or superellipsoids");
-    if (has_any(s))
-      advise(
-          "bodies beside bonds, bridges or adhesion: interactions other than contacts do not act on clumps or "
-          "superellipsoids yet; take "
-          "grains that move by themselves, or leave the interactions out");
-    if (s.contact.slip != Slip::consistent)
-      refuse(std::string("contact/slip = \"") + name(s.contact.slip) + "\" with bodies; allowed: \"consistent\"");
-    if (!s.state.memory_order.empty()) advise("state/memory_order with bodies; leave it empty");
-    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-      const Body& body = s.bodies[b];
-      const auto first = std::size_t(body.first);
-      if (b > 0 && body.id <= s.bodies[b - 1].id)
-        advise(at("bodies/id", b) + " follows " + std::to_string(s.bodies[b - 1].id) +
-               "; ids must ascend, each once: sort the bodies by id, and the grains with them");
-      if (b == 0 ? first != 0 : (first <= std::size_t(s.bodies[b - 1].first) || first >= n))
-        refuse(at("bodies/first", b) + " = " + std::to_string(body.first) +
-               "; allowed: 0 for the first body, then ascending rows of grains");
-      const Turn& q = body.orientation;
-      const double length = std::sqrt(q.w * q.w + q.v.squaredNorm());
-      if (!(std::abs(length - 1) <= 1e-9) || (s.cell.dimension == 2 && (q.v[0] != 0 || q.v[1] != 0)))
-        refuse(at("bodies/orientation", b) + " has the length " + digits_of(length) +
-               "; allowed: a quaternion of length 1, scalar first, in 2D about z");
-      const std::size_t last = b + 1 < s.bodies.size() ? std::size_t(s.bodies[b + 1].first) : n;
-      for (std::size_t g = first; g < std::min(last, n); ++g) check_member(body, first, g);
-      if (moves_as_body(s.shape)) check_solid(b);
-    }
-  }
-  /// A body of one grain has the volume and the inertia of that.
-  void check_solid(std::size_t b) const {
-    const Body& body = s.bodies[b];
-    const Body right = body_of_solid(s.grains, b);
-    if (!s.members[b].offset.isZero(0))
-      refuse(at("members/offset_m", b) + " is not 0; allowed: 0 where shape is " + name(s.shape));
-    if (!(std::abs(body.volume - right.volume) <= 1e-9 * right.volume))
-      refuse(at("bodies/volume_m3", b) + " = " + in_words(body.volume) + "; that of its grain is " +
-             in_words(right.volume) + " m^3");
-    if (!((body.gyration - right.gyration).norm() <= 1e-9 * right.gyration.norm()))
-      refuse(at("bodies/gyration_m2", b) + " is not that of its grain, " + in_words(right.gyration[0]) + " " +
-             in_words(right.gyration[1]) + " " + in_words(right.gyration[2]) + " m^2");
-  }
-  void check_member(const Body& body, std::size_t first, std::size_t g) const {
-    if (s.grains.material[g] != s.grains.material[first])
-      refuse(of_grain("grains/material", g) + " differs from that of the first member of body " +
-             std::to_string(body.id) + "; allowed: one material in a body");
-    const Vector3 from = s.grains.position[g] - body.position - axes_of(body.orientation) * s.members[g].offset;
-    Vector3 periods = s.cell.lattice.triangularView<Eigen::Upper>().solve(from);
-    for (int k = 0; k < 3; ++k) periods[k] -= std::floor(periods[k] + 0.5);
-    if (s.cell.dimension == 2) periods[2] = 0;
-    const double off = (s.cell.lattice * periods).norm();
-    if (!(off <= 1e-6 * s.grains.radius[g]))
-      advise(of_grain("grains/position_m", g) + " is " + in_words(off) + " m from where members/offset_m[" +
-             std::to_string(g) + "] puts it in body " + std::to_string(body.id) +
-             "; give position = body position + axes offset, up to lattice vectors");
   }
 
   void check_cell() const {
@@ -396,119 +247,16 @@ class Relations {
              "; leave it the identity");
   }
 
-  /// A pair in words: "contacts[3], grains 4 and 7 (i = 3, j = 6, image 0, 1, 0)".
-  template <class Item>
-  std::string pair(const std::string& group, const Item& c, std::size_t k) const {
-    const auto id = [&](std::int32_t g) { return std::to_string(s.grains.id[std::size_t(g)]); };
-    return at(group, k) + ", grains " + id(c.i) + " and " + id(c.j) + " (i = " + std::to_string(c.i) +
-           ", j = " + std::to_string(c.j) + ", image " + std::to_string(c.image[0]) + ", " +
-           std::to_string(c.image[1]) + ", " + std::to_string(c.image[2]) + ")";
-  }
-  std::string pair(std::size_t k) const { return pair("contacts", s.contacts[k], k); }
-
-  /// Pairs of grains that there are, each once and in order. `each`: what one is called.
-  template <class Item>
-  void check_pairs(const std::string& group, const std::string& each, const std::vector<Item>& items) const {
-    const std::size_t n = s.grains.size();
-    for (std::size_t k = 0; k < items.size(); ++k) {
-      const Item& c = items[k];
-      if (c.j < c.i || std::size_t(c.j) >= n)
-        refuse(at(group + "/i", k) + " = " + std::to_string(c.i) + ", " + at(group + "/j", k) + " = " +
-               std::to_string(c.j) + "; allowed: 0 <= i <= j < " + std::to_string(n));
-      if (c.i == c.j && c.image == Image{})
-        refuse(pair(group, c, k) + " is a grain that touches itself; allowed: an image of it, in " + group + "/image");
-      if (k > 0 && pair_of(c) == pair_of(items[k - 1]))
-        refuse(pair(group, c, k) + " stands twice; allowed: each " + each + " once");
-      if (k > 0 && pair_of(c) < pair_of(items[k - 1]))
-        refuse(pair(group, c, k) + " is out of order; allowed: " + group + " sorted by i, then j, then image");
-      for (std::size_t d = 0; d < c.image.size(); ++d)  // cells that are reduced add to it
-        if (std::abs(double(c.image[d])) > 1e9)
-          refuse(group + "/image[" + std::to_string(k) + ", " + std::to_string(d) +
-                 "] = " + std::to_string(c.image[d]) + " is out of range; allowed: -1e9 to 1e9");
-    }
-  }
-
   void check_contacts() const {
     check_pairs("contacts", "contact", s.contacts);
-    for (std::size_t k = 0; k < s.contacts.size(); ++k) check_history(k);
-  }
-
-  void check_interactions() const {
-    each_interaction_law([&](auto, auto law) {
-      using Law = decltype(law);
-      if constexpr (FormsByItself<Law>) check_settings<Law>();
-      const auto& items = static_cast<const ListOf<Law>&>(s).items;
-      if (!items.empty() && !is_round(s.shape))
-        refuse(std::string(Law::name) + " of grains that are not round; allowed: between discs or spheres");
-      check_pairs(Law::name, "pair", items);
-      for (std::size_t k = 0; k < items.size(); ++k) check_interaction<Law>(items[k], k);
-    });
-  }
-
-  /// What interactions of a law form from.
-  template <class Law>
-  void check_settings() const {
-    const auto& rows = static_cast<const SettingsOf<Law>&>(s).settings;
-    const std::string name = Law::settings_name;
-    if (rows.empty() && !static_cast<const ListOf<Law>&>(s).items.empty())
-      refuse(std::string(Law::name) + " without " + name + "; allowed: with one row of " + name +
-             ", which says what they form from");
-    if (rows.size() > 1)
-      refuse(name + " has " + std::to_string(rows.size()) + " rows; allowed: none, or one for all grains");
-    if (rows.empty()) return;
-    if (!is_round(s.shape)) refuse(name + " between grains that are not round; allowed: between discs or spheres");
-    const bool hertz = with_law(s.contact.law, [](auto law) { return decltype(law)::Force::needs_root_overlap; });
-    const double mean = std::accumulate(s.grains.radius.begin(), s.grains.radius.end(), 0.0) / double(s.grains.size());
-    if (const double reach = Law::reach(rows.front()); reach > mean)
-      refuse(name + " makes grains act on one another up to a gap of " + in_words(reach) +
-             " m; allowed: up to their mean radius, " + in_words(mean) + " m");
-    const char* misfit = Law::misfit(rows.front(), {s.cell.dimension, hertz});
-    if (misfit == nullptr) return;
-    std::string values;
-    for (const auto& field : Law::settings_fields)
-      values += (values.empty() ? "" : ", ") + name + "/" + field.name + " = " + in_words(rows.front().*field.value);
-    refuse(values + "; allowed: " + misfit);
-  }
-
-  /// Numbers that stand for a state are whole; what a file has is there; what acts is about as long as when it was
-  /// made, or its image is another's and it would tear the grains apart in one step.
-  template <class Law>
-  void check_interaction(const Interaction<Law>& item, std::size_t k) const {
-    double columns[interaction_columns<Law>()];
-    put_columns<Law>(item, columns);
-    const auto column = [&](int number) { return columns[number]; };
-    each_field<Law>(item, [&](const InteractionField& field, const auto& value) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
-        if (!field.whole) return;
-        const bool presence = field.allowed.high == 1;  // a file holds what is there
-        if (presence ? value != 1 : value != std::floor(value))
-          refuse(at(std::string(Law::name) + "/" + field.name, k) + " = " + in_words(value) +
-                 " is out of range; allowed: " + (presence ? "1, of what is there" : "a whole number"));
-      }
-    });
-    const double radii = s.grains.radius[std::size_t(item.i)] + s.grains.radius[std::size_t(item.j)];
-    const Vector3 branch = s.grains.position[std::size_t(item.j)] + translation(s.cell, item.image) -
-                           s.grains.position[std::size_t(item.i)];
-    const double now = branch.stableNorm();
-    const auto check_length = [&](const char* field, double value, double made) {
-      if (now > 10 * made || made > 10 * now)
-        refuse(at(std::string(Law::name) + "/" + field, k) + " = " + in_words(value) + " of a pair whose centres are " +
-               in_words(now) +
-               " m apart; allowed: a distance as it was made of a tenth to ten times that, of what still acts");
-    };
-    if (!Law::acts(column, now - radii)) return;
-    if constexpr (requires { Law::length; }) check_length("length_m", columns[Law::length], columns[Law::length]);
-    if constexpr (requires { Law::first_gap; })
-      check_length("gap_m", columns[Law::first_gap], columns[Law::first_gap] + radii);
+    const std::vector<double> rolling = moves_as_body(s.shape) ? rolling_radii_of(s.grains) : std::vector<double>{};
+    for (std::size_t k = 0; k < s.contacts.size(); ++k) check_history(k, rolling);
   }
 
   /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong
   /// to it. In space tangential forces and moments lie in the tangent plane: the next step would turn one along the
   /// normal into it, whatever its size. A thousandth is what tables of six digits leave, the rest is round-off.
-  void check_history(std::size_t k) const;
-
-  const Specimen& s;
-  const std::string& where_;
+  void check_history(std::size_t k, const std::vector<double>& rolling) const;
 };
 
 PairParameters parameters_of(const Specimen& s, const Contact& c) {
@@ -519,19 +267,19 @@ PairParameters parameters_of(const Specimen& s, const Contact& c) {
   return mix(s.contact, s.damping, material(i), s.grains.radius[i], 1, material(j), s.grains.radius[j], 1, 0);
 }
 
-void Relations::check_history(std::size_t k) const {
+void Relations::check_history(std::size_t k, const std::vector<double>& rolling) const {
   const Contact& c = s.contacts[k];
   if (c.tangential_force.isZero(0) && c.rolling_moment.isZero(0)) return;
   const PairParameters parameters = parameters_of(s, c);
   if (!c.tangential_force.isZero(0) && !(parameters.kt > 0))
-    advise(pair(k) + " holds a tangential force of " + in_words(c.tangential_force.stableNorm()) +
+    advise(pair("contacts", c, k) + " holds a tangential force of " + in_words(c.tangential_force.stableNorm()) +
            " N, but its tangential stiffness is 0; give a stiffness > 0, or clear the tangential forces");
-  // Of other shapes the normal is not along the branch, and a step takes what is tangential alone.
-  if (s.cell.dimension == 2 || !is_round(s.shape)) return;
+  if (s.cell.dimension == 2) return;  // one component, along the tangent
   const Vector3 &xi = s.grains.position[std::size_t(c.i)], &xj = s.grains.position[std::size_t(c.j)];
   const Vector3 shift = translation(s.cell, c.image), branch = xj + shift - xi;
   const double length = branch.stableNorm();
   if (!(length > 0)) return;  // grains at one place: refused where contacts are made
+  const Vector3 normal = moves_as_body(s.shape) ? normal_of_solids(s, c, rolling) : Vector3(branch / length);
   const double reach = s.grains.radius[std::size_t(c.i)] + s.grains.radius[std::size_t(c.j)];
   const double root = with_law(s.contact.law, [&](auto law) {
     using Force = typename decltype(law)::Force;
@@ -540,7 +288,7 @@ void Relations::check_history(std::size_t k) const {
   constexpr double round_off = std::numeric_limits<double>::epsilon();
   const double share = 1e-3 + 8 * round_off * (xi.stableNorm() + xj.stableNorm() + shift.stableNorm()) / length;
   const auto expect_tangential = [&](const Vector3& vector, double stiffness, const char* field, const char* unit) {
-    const double along = std::abs(vector.dot(branch)) / length;
+    const double along = std::abs(vector.dot(normal));
     if (along <= share * vector.stableNorm() + 1e4 * round_off * stiffness) return;
     refuse(at(field, k) + " has " + in_words(along) + " of its " + in_words(vector.stableNorm()) + " " + unit +
            " along the normal of the contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
@@ -587,14 +335,15 @@ void check_specimen(const Specimen& s, const std::string& where) {
   const std::size_t n = s.grains.size();
   if (n == 0 || n > 100'000'000)
     throw InputError(where + "grains/id: " + std::to_string(n) + " grains; allowed: 1 to 100000000 in one cell");
-  const Ranges ranges(s, where);
+  const CheckedSpecimen checked{s, where};
+  const Ranges ranges(checked);
   fields::visit(ranges, s);
   try {
     check_parameters(s.contact, s.damping, s.materials);
   } catch (const InputError& error) {
     throw InputError(where + error.what());
   }
-  Relations(s, where).check();
+  Relations(checked).check();
 }
 
 }  // namespace rvelab

@@ -133,22 +133,12 @@ void one_large_increment(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> deformation_experiments() {
-  return {{"deformation/shear", sheared_far, {{"dimension", 2}, {"gamma", 100}, {"increment", 0.1}, {"substeps", 0}}},
-          {"deformation/stretch",
-           stretched_far,
-           {{"dimension", 2}, {"grains", 32}, {"hencky", 10}, {"oriented", 1}, {"substeps", 0}}},
-          {"deformation/compression", compressed_until_refused, {{"dimension", 2}, {"hertz", 0}, {"rate", 0}}},
-          {"deformation/gas_and_back", gas_and_back, {{"dimension", 2}, {"kappa", 1e3}, {"expansion", 0.3}}},
-          {"deformation/one_increment",
-           one_large_increment,
-           {{"dimension", 2},
-            {"grains", 64},
-            {"kappa", 100},
-            {"friction", 0},
-            {"dt", 0},
-            {"compression", 0},
-            {"shear", 0.5},
-            {"expansion", 0}}}};
+  return {{"deformation/shear", sheared_far, "dimension 2, gamma 100, increment 0.1, substeps 0"},
+          {"deformation/stretch", stretched_far, "dimension 2, grains 32, hencky 10, oriented 1, substeps 0"},
+          {"deformation/compression", compressed_until_refused, "dimension 2, hertz 0, rate 0"},
+          {"deformation/gas_and_back", gas_and_back, "dimension 2, kappa 1e3, expansion 0.3"},
+          {"deformation/one_increment", one_large_increment,
+           "dimension 2, grains 64, kappa 100, friction 0, dt 0, compression 0, shear 0.5, expansion 0"}};
 }
 
 }  // namespace rvelab::test

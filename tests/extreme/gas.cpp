@@ -164,18 +164,9 @@ void gas_cools(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> gas_experiments() {
-  return {{"gas/energy",
-           gas_keeps_energy,
-           {{"dimension", 2}, {"hertz", 0}, {"grains", 100}, {"collisions", 100}, {"time_step_factor", 0.7}}},
-          {"gas/haff",
-           gas_cools,
-           {{"dimension", 2},
-            {"hertz", 0},
-            {"gases", 16},
-            {"restitution", 0.9},
-            {"duration", 3},
-            {"contact_time", 3e-3},
-            {"time_step_factor", 0.7}}}};
+  return {{"gas/energy", gas_keeps_energy, "dimension 2, hertz 0, grains 100, collisions 100, time_step_factor 0.7"},
+          {"gas/haff", gas_cools,
+           "dimension 2, hertz 0, gases 16, restitution 0.9, duration 3, contact_time 3e-3, time_step_factor 0.7"}};
 }
 
 }  // namespace rvelab::test

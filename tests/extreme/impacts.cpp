@@ -136,12 +136,10 @@ void impact_too_hard(const Case& asked, Verdict& verdict) {
 
 std::vector<Experiment> impact_experiments() {
   return {
-      {"impact/rebound", elastic_rebound, {{"dimension", 3}, {"hertz", 0}, {"speed", 0.1}, {"time_step_factor", 0.7}}},
-      {"impact/restitution",
-       restitution,
-       {{"dimension", 3}, {"hertz", 0}, {"restitution", 0.5}, {"no_tension", 0}, {"time_step_factor", 0.7}}},
-      {"impact/third_contact", restitution_beside_contact, {{"hertz", 0}, {"restitution", 0.5}}},
-      {"impact/too_hard", impact_too_hard, {{"dimension", 3}, {"hertz", 1}, {"overlap_over_limit", 2}}}};
+      {"impact/rebound", elastic_rebound, "dimension 3, hertz 0, speed 0.1, time_step_factor 0.7"},
+      {"impact/restitution", restitution, "dimension 3, hertz 0, restitution 0.5, no_tension 0, time_step_factor 0.7"},
+      {"impact/third_contact", restitution_beside_contact, "hertz 0, restitution 0.5"},
+      {"impact/too_hard", impact_too_hard, "dimension 3, hertz 1, overlap_over_limit 2"}};
 }
 
 }  // namespace rvelab::test

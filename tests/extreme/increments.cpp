@@ -73,9 +73,9 @@ void there_and_back(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> increment_experiments() {
-  return {{"increments/rotations", rotated_often, {{"dimension", 3}, {"rotations", 1e5}}},
-          {"increments/small", many_small_increments, {{"increments", 1e6}, {"strain", 1e-9}}},
-          {"increments/there_and_back", there_and_back, {{"strain", 1e-6}, {"cycles", 5000}, {"parts", 1}}}};
+  return {{"increments/rotations", rotated_often, "dimension 3, rotations 1e5"},
+          {"increments/small", many_small_increments, "increments 1e6, strain 1e-9"},
+          {"increments/there_and_back", there_and_back, "strain 1e-6, cycles 5000, parts 1"}};
 }
 
 }  // namespace rvelab::test

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <sstream>
 
 #include "rvelab/error.hpp"
 
@@ -41,6 +42,15 @@ std::string written(double value) {
   mantissa.erase(mantissa.find_last_not_of('0') + 1);
   if (mantissa.back() == '.') mantissa.pop_back();
   return mantissa + "e" + std::to_string(std::stoi(all.substr(exponent + 1)));
+}
+
+/// Of "dimension 2, hertz 0".
+std::map<std::string, double> parameters_in(const std::string& text) {
+  std::map<std::string, double> found;
+  std::istringstream words(text);
+  double value = 0;
+  for (std::string name; words >> name >> value; words.ignore()) found[name] = value;
+  return found;
 }
 
 double number(const toml::node& node) {
@@ -103,7 +113,7 @@ std::vector<Case> cases_of(const toml::table& table) {
   one.may_flag = table["may_flag"].value_or(false);
   one.seconds = table["seconds"].value<double>().value();
   one.memory_MiB = table["memory_MiB"].value<double>().value();
-  one.parameters = one.experiment->parameters;
+  one.parameters = parameters_in(one.experiment->parameters);
   for (const auto& [key, values] : values_in(table.get("with"))) one.parameters.at(key) = values.at(0);
   for (const auto& [key, values] : quick)
     for (const double value : values)

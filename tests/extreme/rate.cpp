@@ -146,26 +146,13 @@ void flow_under_stress(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> rate_experiments() {
-  return {{"rate/shear",
-           sheared_at_rate,
-           {{"dimension", 2},
-            {"hertz", 0},
-            {"inertial_number", 1e-3},
-            {"default_steps", 20000},
-            {"friction", 0.5},
-            {"kt_over_kn", 0.5},
-            {"rolling_stiffness", 0},
-            {"local_damping", 0},
-            {"restitution", 1},
-            {"density", 2650},
-            {"kappa", 1e3},
-            {"time_step_factor", 0.7},
-            {"aspect_ratio", 1}}},
-          {"rate/shock", shock_compression, {{"dimension", 3}, {"hertz", 1}, {"mach", 0.1}, {"time_step_factor", 0.7}}},
-          {"rate/slow", slow_is_static, {{"local_damping", 0.3}, {"critical_steps", 1e5}}},
-          {"rate/flow",
-           flow_under_stress,
-           {{"inertial_number", 1e-2}, {"restitution", 0.5}, {"gamma", 4}, {"increments", 800}}}};
+  return {{"rate/shear", sheared_at_rate,
+           "dimension 2, hertz 0, inertial_number 1e-3, default_steps 20000, friction 0.5, kt_over_kn 0.5, "
+           "rolling_stiffness 0, local_damping 0, restitution 1, density 2650, kappa 1e3, time_step_factor 0.7, "
+           "aspect_ratio 1"},
+          {"rate/shock", shock_compression, "dimension 3, hertz 1, mach 0.1, time_step_factor 0.7"},
+          {"rate/slow", slow_is_static, "local_damping 0.3, critical_steps 1e5"},
+          {"rate/flow", flow_under_stress, "inertial_number 1e-2, restitution 0.5, gamma 4, increments 800"}};
 }
 
 }  // namespace rvelab::test

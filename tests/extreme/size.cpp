@@ -131,13 +131,11 @@ void thin_cell(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> size_experiments() {
-  return {{"size/few", few_grains, {{"dimension", 2}, {"grains", 3}}},
-          {"size/contrast",
-           unlike_radii,
-           {{"dimension", 2}, {"ratio", 10}, {"large", 4}, {"small", 400}, {"solid_fraction", 0.6}}},
-          {"size/pores", grains_in_pores, {{"side", 8}}},
-          {"size/million", million_grains, {{"side", 100}}},
-          {"size/thin", thin_cell, {{"dimension", 2}, {"grains", 4}, {"copies", 4}}}};
+  return {{"size/few", few_grains, "dimension 2, grains 3"},
+          {"size/contrast", unlike_radii, "dimension 2, ratio 10, large 4, small 400, solid_fraction 0.6"},
+          {"size/pores", grains_in_pores, "side 8"},
+          {"size/million", million_grains, "side 100"},
+          {"size/thin", thin_cell, "dimension 2, grains 4, copies 4"}};
 }
 
 }  // namespace rvelab::test

@@ -83,10 +83,9 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> statics_experiments() {
-  return {{"statics/frictionless",
-           made_frictionless,
-           {{"prepared_with", 1}, {"friction", 0}, {"shear", 1}, {"strain", 1e-4}, {"increments", 1}}},
-          {"statics/tension", asked_for_tension, {{"dimension", 2}, {"critical_steps", 0}, {"all_round", 1}}}};
+  return {
+      {"statics/frictionless", made_frictionless, "prepared_with 1, friction 0, shear 1, strain 1e-4, increments 1"},
+      {"statics/tension", asked_for_tension, "dimension 2, critical_steps 0, all_round 1"}};
 }
 
 }  // namespace rvelab::test

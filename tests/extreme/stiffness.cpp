@@ -76,29 +76,13 @@ void refuses_orphaned_history(const Case&, Verdict& verdict) {
 }  // namespace
 
 std::vector<Experiment> stiffness_experiments() {
-  return {{"stiffness/linear",
-           agrees_with_resolved_run,
-           {{"dimension", 2},
-            {"kappa", 1e3},
-            {"kt_over_kn", 0.5},
-            {"friction", 0.5},
-            {"rolling_stiffness", 0},
-            {"local_damping", 0.3},
-            {"restitution", 1},
-            {"adhesion", 0},
-            {"shear", 0},
-            {"strain_times_kappa", 0.5},
-            {"aspect_ratio", 1}}},
-          {"stiffness/hertz",
-           hertz_agrees_with_resolved_run,
-           {{"dimension", 3},
-            {"young_modulus", 1e9},
-            {"pressure", 1e5},
-            {"poisson_ratio", 0.2},
-            {"shear", 0},
-            {"strain_times_kappa", 0.5}}},
-          {"stiffness/density", does_not_see_density, {{"dimension", 2}, {"hertz", 0}, {"density", 1}}},
-          {"stiffness/orphaned_history", refuses_orphaned_history, {}}};
+  return {{"stiffness/linear", agrees_with_resolved_run,
+           "dimension 2, kappa 1e3, kt_over_kn 0.5, friction 0.5, rolling_stiffness 0, local_damping 0.3, "
+           "restitution 1, adhesion 0, shear 0, strain_times_kappa 0.5, aspect_ratio 1"},
+          {"stiffness/hertz", hertz_agrees_with_resolved_run,
+           "dimension 3, young_modulus 1e9, pressure 1e5, poisson_ratio 0.2, shear 0, strain_times_kappa 0.5"},
+          {"stiffness/density", does_not_see_density, "dimension 2, hertz 0, density 1"},
+          {"stiffness/orphaned_history", refuses_orphaned_history, ""}};
 }
 
 }  // namespace rvelab::test

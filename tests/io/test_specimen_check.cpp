@@ -12,9 +12,7 @@
 #include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
-#include "rvelab/specimen/clumps.hpp"
-#include "tests/catch.hpp"
-#include "tests/specimens.hpp"
+#include "tests/bodies.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -113,13 +111,18 @@ Specimen two_clumps() {
   return s;
 }
 
-/// A loaded packing of spheres whose contacts hold tangential forces in space.
-Specimen sheared_spheres() {
-  Rve rve = at_rest(disordered(Shape::sphere, 4, linear_material(1e5, 5e4, 0.5), Law::linear_stiffness, 0.51, 4), 1e-6);
-  rve.apply(gradient(0, 1e-3, 0, 0), 0);
+/// Sheared, so that contacts hold tangential forces.
+Specimen sheared(Rve rve, double strain) {
+  rve.apply(gradient(0, strain, 0, 0), 0);
   Specimen specimen = rve.specimen();
   REQUIRE(specimen.contacts.size() > 20);
   return specimen;
+}
+
+Specimen sheared_spheres() {
+  return sheared(
+      at_rest(disordered(Shape::sphere, 4, linear_material(1e5, 5e4, 0.5), Law::linear_stiffness, 0.51, 4), 1e-6),
+      1e-3);
 }
 
 }  // namespace
@@ -182,27 +185,32 @@ TEST_CASE("in 2D everything lies in the plane, and spins and moments are normal 
 }
 
 TEST_CASE("tangential forces and moments in space lie in the tangent plane, to round-off") {
-  const Specimen good = sheared_spheres();
-  CHECK(refusal(good).empty());
-  std::size_t turned = 0;
-  for (std::size_t k = 0; k < good.contacts.size(); ++k) {
-    Specimen bad = good;
-    Contact& c = bad.contacts[k];
-    const double force = c.tangential_force.norm();
-    if (!(force > 0)) continue;
-    const Vector3 normal =
-        (bad.grains.position[std::size_t(c.j)] + translation(bad.cell, c.image) - bad.grains.position[std::size_t(c.i)])
-            .normalized();
-    c.tangential_force = force * normal;
-    CHECK_THAT(refusal(bad), Contains("/contacts/tangential_force_N[" + std::to_string(k) + "] has "));
-    c = good.contacts[k];
-    c.tangential_force += 0.1 * force * normal;
-    CHECK_THAT(refusal(bad), Contains("/contacts/tangential_force_N[" + std::to_string(k) + "]"));
-    c.tangential_force = good.contacts[k].tangential_force + 1e-5 * force * normal;  // six digits of a table
-    CHECK(refusal(bad).empty());
-    ++turned;
+  const double strain = 5e-5;  // bodies under 5 kPa overlap by little more
+  for (const Specimen& good :
+       {sheared_spheres(), sheared(Rve(pressed_clumps(Shape::sphere, 3, "pair", 5)), strain),
+        sheared(Rve(pressed_solids(3, ellipsoid, 5)), strain), sheared(Rve(pressed_solids(3, blocky, 5)), strain)}) {
+    CAPTURE(int(good.shape), good.bodies.size());
+    CHECK(refusal(good).empty());
+    const Network network = Rve(good).network();
+    REQUIRE(network.contacts.size() == good.contacts.size());
+    std::size_t turned = 0;
+    for (std::size_t k = 0; k < good.contacts.size(); ++k) {
+      Specimen bad = good;
+      Contact& c = bad.contacts[k];
+      const double force = c.tangential_force.norm();
+      if (!(force > 0)) continue;
+      const Vector3 normal = network.contacts[k].normal;
+      c.tangential_force = force * normal;
+      CHECK_THAT(refusal(bad), Contains("/contacts/tangential_force_N[" + std::to_string(k) + "] has "));
+      c = good.contacts[k];
+      c.tangential_force += 0.1 * force * normal;
+      CHECK_THAT(refusal(bad), Contains("/contacts/tangential_force_N[" + std::to_string(k) + "]"));
+      c.tangential_force = good.contacts[k].tangential_force + 1e-5 * force * normal;  // six digits of a table
+      CHECK(refusal(bad).empty());
+      ++turned;
+    }
+    CHECK(turned > 10);
   }
-  CHECK(turned > 10);
 }
 
 TEST_CASE("a lattice is upper triangular with a positive diagonal and bounded tilt, its frame a rotation") {

@@ -7,7 +7,7 @@
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/superellipsoid_rows.hpp"
 #include "rvelab/solver/kernels/superellipsoids.hpp"
-#include "rvelab/superellipsoid/body.hpp"
+#include "rvelab/specimen/solids.hpp"
 
 namespace rvelab {
 namespace {
@@ -49,19 +49,12 @@ double shown_gap_of_ellipsoids(const OverlapPair& pair) {
 std::vector<double> forms_of(const Grains& grains) {
   std::vector<double> forms;
   forms.reserve(9 * grains.size());
-  Superellipsoid last{};
-  double last_rolling = 0;  // of a half axis c of 1
+  const std::vector<double> rolling = rolling_radii_of(grains);
   for (std::size_t g = 0; g < grains.size(); ++g) {
-    const Superellipsoid s = {grains.half_x[g], grains.half_y[g], grains.half_z[g], grains.exponent_xy[g],
-                              grains.exponent_z[g]};
-    const Superellipsoid unit = {s.a / s.c, s.b / s.c, 1, s.e, s.n};
-    if (unit.a != last.a || unit.b != last.b || unit.e != last.e || unit.n != last.n) {
-      last = unit;
-      last_rolling = rolling_radius_of(unit);
-    }
+    const Superellipsoid s = superellipsoid_of(grains, g);
     const SuperellipsoidForm<double> form = plain_form_of(s);
     for (const double value :
-         {s.c * last_rolling, s.a, s.b, s.c, 1 - form.share_xy, 1 - form.share_z, form.root_xy + 0.5, form.root_z + 0.5,
+         {rolling[g], s.a, s.b, s.c, 1 - form.share_xy, 1 - form.share_z, form.root_xy + 0.5, form.root_z + 0.5,
           SuperellipsoidGrain::extent(own_of<SuperellipsoidGrain>(grains, g)).turning})
       forms.push_back(value);
   }
