@@ -49,7 +49,7 @@ struct TurnValues {
   double first, second;
 };
 
-/// Of grains that are round: radius and place say all. `Self`: the shape.
+/// Of grains that are round: radius and position say all. `Self`: the shape.
 template <class Self>
 struct RoundGrain {
   static constexpr bool round = true, rigid = false, has_hertz_curvature = false;

@@ -30,7 +30,7 @@ enum class InPlane { any, along, normal, tangent };
 
 /// One member: its name in a file, its unit ("1" for a pure number, "-" for text) and what its numbers may be: finite
 /// and in this range, of vectors and matrices each component. What fields must be beside one another is in
-/// specimen_check.cpp.
+/// specimen_check.cpp, body_check.cpp and interaction_check.cpp.
 template <class Owner, class Value>
 struct Field {
   const char* name;

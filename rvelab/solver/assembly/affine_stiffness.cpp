@@ -33,14 +33,14 @@ void each_interaction(const Model& model, const Assembly& assembly, const Add& a
 template <Shape shape, class Of>
 Moments moments_of(const Model& model, const Assembly& assembly, const Of& coefficients, bool interactions) {
   constexpr int D = dimension_of(shape), pairs = D == 2 ? 3 : 6;
-  constexpr int place[6] = {0, 1, D == 2 ? 5 : 2, 3, 4, 5};  // of the products of two components of n
+  constexpr int voigt[6] = {0, 1, D == 2 ? 5 : 2, 3, 4, 5};  // of the products of two components of n
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   double four[D][pairs] = {}, two[pairs] = {};
   const auto add = [&](const Branch& b, double kn, double kt) {
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
     const double all[6] = {b.x * b.x, b.y * b.y, b.z * b.z, b.y * b.z, b.x * b.z, b.x * b.y};
     double products[pairs];
-    for (int k = 0; k < pairs; ++k) products[k] = all[place[k]];
+    for (int k = 0; k < pairs; ++k) products[k] = all[voigt[k]];
     for (int k = 0; k < pairs; ++k) two[k] += kt * products[k];
     for (int i = 0; i < D; ++i)
       for (int k = i; k < pairs; ++k) four[i][k] += part * (products[i] * products[k]);
@@ -52,10 +52,10 @@ Moments moments_of(const Model& model, const Assembly& assembly, const Of& coeff
   if (interactions) each_interaction(model, assembly, add);
   Moments m;
   Vector6 second = Vector6::Zero();
-  for (int k = 0; k < pairs; ++k) second[place[k]] = two[k];
+  for (int k = 0; k < pairs; ++k) second[voigt[k]] = two[k];
   m.second << second[0], second[5], second[4], second[5], second[1], second[3], second[4], second[3], second[2];
   for (int i = 0; i < D; ++i)
-    for (int k = i; k < pairs; ++k) m.fourth(i, place[k]) = m.fourth(place[k], i) = four[i][k];
+    for (int k = i; k < pairs; ++k) m.fourth(i, voigt[k]) = m.fourth(voigt[k], i) = four[i][k];
   // The same monomials: yz yz is yyzz, yz xz is zzxy, and so on.
   const Matrix6& known = m.fourth;
   m.fourth.bottomRightCorner<3, 3>() << known(1, 2), known(2, 5), known(1, 4), known(2, 5), known(0, 2), known(0, 3),

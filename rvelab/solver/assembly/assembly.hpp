@@ -106,13 +106,13 @@ struct InteractionTable {
 
 /// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
 /// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
-/// what touched then, and with it the place of a pair, is nothing that a restart knows.
+/// what touched then, and with it the index of a pair, is nothing that a restart knows.
 struct PairTable {
   std::size_t listed = 0;           ///< pairs without the padding
   std::size_t near = 0;             ///< the first of them, computed at every step (kernels/configuration.hpp)
-  std::vector<std::int32_t> order;  ///< places of the pairs in the order of (i, j, image)
-  /// kernels/configuration.hpp. Sums over pairs pass over what has not touched: forces must be those of the places that
-  /// the grains have.
+  std::vector<std::int32_t> order;  ///< indices of the pairs in the order of (i, j, image)
+  /// kernels/configuration.hpp. Sums over pairs pass over what has not touched: forces must be those of the positions
+  /// that the grains have.
   std::vector<std::uint8_t> touched, shifted;
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the length of a grain row

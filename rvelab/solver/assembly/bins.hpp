@@ -9,7 +9,7 @@
 
 namespace rvelab {
 
-/// A grain as the search sees it: place wrapped into the cell, lattice translation that took it there, bin by bin.
+/// A grain as the search sees it: position wrapped into the cell, lattice translation that took it there, bin by bin.
 struct Binned {
   double x[3], radius;
   std::int32_t grain;

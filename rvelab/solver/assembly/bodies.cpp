@@ -176,8 +176,8 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
   const std::int32_t *owner = bodies.owner.data(), *grain_i = pairs.i.data(), *grain_j = pairs.j.data();
   const std::uint8_t* touched = pairs.touched.data();
   const std::size_t near = pairs.near;
-  for (const std::int32_t place : pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t listed : pairs.order) {
+    const auto p = std::size_t(listed);
     if (p >= near && touched[p / 8] == 0) continue;
     const double* row = force + length * p;
     const auto i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
@@ -216,8 +216,8 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
 template <bool Rolling>
 void gather_solids(const PairTable& pairs, Resultant* resultants) {
   const double *force = pairs.force.data(), *solid = pairs.solid.data();
-  for (const std::int32_t place : pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t listed : pairs.order) {
+    const auto p = std::size_t(listed);
     if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
     const double *row = force + 8 * p, *torque_i = solid + 8 * p + 4;
     Resultant &on_i = resultants[pairs.i[p]], &on_j = resultants[pairs.j[p]];
@@ -260,8 +260,8 @@ Matrix3 virial_of_bodies(const Model& model, const Assembly& assembly) {
     const PairGeometry<shape.value> pair(model, assembly);
     const PairTable& pairs = assembly.pairs;
     Matrix3 sum = Matrix3::Zero();
-    for (const std::int32_t place : pairs.order) {
-      const auto p = std::size_t(place);
+    for (const std::int32_t listed : pairs.order) {
+      const auto p = std::size_t(listed);
       if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
       const Branch b = pair.branch(p);
       const Vector3 branch = Vector3(b.x, b.y, b.z) + assembly.bodies.arm[std::size_t(pairs.i[p])] -

@@ -49,7 +49,7 @@ struct BodyMotion {
 /// What it changes.
 struct BodyMotions {
   std::vector<BodyMotion> motion;  ///< by body
-  // Follow from them and from the places of the members.
+  // Follow from them and from the positions of the members.
   std::vector<Vector3> arm;  ///< by member, m, cell frame
   std::vector<Image> image;  ///< by member
 };

@@ -61,7 +61,7 @@ void add_torques(const Model& model, const ContactState& c, const Vector3& force
   j.torque -= (j.radius - 0.5 * c.overlap) * turning - c.rolling_moment;
 }
 
-/// A touching contact; `at` is its place.
+/// A touching contact; `at`: where it touches.
 template <class Place>
 ContactState state_of(const Model& model, const PairTable& pairs, std::size_t p, const Place& at) {
   ContactState c;

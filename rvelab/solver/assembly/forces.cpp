@@ -173,7 +173,7 @@ void gather_resultants(const Model& model, const Assembly& assembly, const PairP
                        std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   each_pair_of_grains<D>(assembly.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
-    // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
+    // The entry of a pair that opened still holds the moment of rolling until the kernel passes by.
     if (!(pair(p).overlap > 0)) return;
     const bool own_image = assembly.pairs.i[p] == assembly.pairs.j[p];
     if (own_image && as_j) return;  // both at once where the grain is i, as above

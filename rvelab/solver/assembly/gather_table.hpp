@@ -15,12 +15,12 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
 /// Fills `gathered` and `slots_beyond` as after listing: no pair beyond `near` has touched.
 void leave_out_pairs_beyond(std::int32_t force_row, PairTable& pairs);
 
-/// After a loop over the pairs of these places, multiples of eight: the force rows of those beyond `near` are gathered
+/// After a loop over the pairs of these indices, multiples of eight: the force rows of those beyond `near` are gathered
 /// from their first contact on.
 void gather_pairs_that_touch(PairTable& pairs, std::size_t first, std::size_t last);
 inline void gather_pairs_that_touch(PairTable& pairs) { gather_pairs_that_touch(pairs, pairs.near, pairs.padded()); }
 
-/// Calls at(grain, place, as_j) for every pair of the grains [first, last), multiples of a chunk but for the end: for
+/// Calls at(grain, pair, as_j) for every pair of the grains [first, last), multiples of a chunk but for the end: for
 /// each grain in the order of (i, j, image), since the pairs in which it is j all come before those in which it is i.
 template <int D, class At>
 void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t last, const At& at) {
@@ -33,10 +33,10 @@ void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t 
         const std::size_t task = pairs.tasks[k] / 4, block = k / 4;
         if ((task < chunk) != as_j) continue;
         for (auto slot = pairs.slot_begin[block]; slot < pairs.slot_begin[block + 1]; ++slot) {
-          const auto place = std::size_t(pairs.slots[4 * std::size_t(slot) + k % 4] / force_row);
-          if (place >= pairs.listed)
+          const auto pair = std::size_t(pairs.slots[4 * std::size_t(slot) + k % 4] / force_row);
+          if (pair >= pairs.listed)
             break;  // interactions, or padding: tasks of the block have more pairs than this one
-          at(start + (as_j ? task : task - chunk), place, as_j);
+          at(start + (as_j ? task : task - chunk), pair, as_j);
         }
       }
   }

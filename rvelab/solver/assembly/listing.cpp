@@ -87,8 +87,8 @@ struct KeptDirection {
 std::vector<KeptDirection> directions_in(const PairTable& pairs) {
   std::vector<KeptDirection> kept;
   if (pairs.solid.empty()) return kept;
-  for (const std::int32_t place : pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t listed : pairs.order) {
+    const auto p = std::size_t(listed);
     const double* at = pairs.solid.data() + 8 * p;
     if (at[0] != 0 || at[1] != 0 || at[2] != 0) kept.push_back({pairs.i[p], pairs.j[p], {at[0], at[1], at[2]}});
   }
@@ -96,8 +96,8 @@ std::vector<KeptDirection> directions_in(const PairTable& pairs) {
 }
 void put_directions(const std::vector<KeptDirection>& kept, PairTable& pairs) {
   std::size_t k = 0;
-  for (const std::int32_t place : pairs.order) {
-    const auto p = std::size_t(place);
+  for (const std::int32_t listed : pairs.order) {
+    const auto p = std::size_t(listed);
     const auto pair = std::pair(pairs.i[p], pairs.j[p]);
     while (k < kept.size() && std::pair(kept[k].i, kept[k].j) < pair) ++k;
     if (k < kept.size() && std::pair(kept[k].i, kept[k].j) == pair)

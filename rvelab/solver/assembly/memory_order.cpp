@@ -15,7 +15,7 @@ std::vector<std::int32_t> inverse_of(const std::vector<std::int32_t>& order) {
   return inverse;
 }
 
-/// values[order[k]] at place k.
+/// values[order[k]] at index k.
 template <class Value>
 void rearrange(std::vector<Value>& values, const std::vector<std::int32_t>& order) {
   if (values.empty()) return;
@@ -64,7 +64,7 @@ void renumber(std::vector<AnyContact>& contacts, const std::vector<std::int32_t>
   });
 }
 
-/// `order[place]`: where the grain of that place comes from.
+/// `order[row]`: where the grain of that row comes from.
 Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.grains.id, order);
   rearrange(s.grains.radius, order);

@@ -25,9 +25,9 @@ struct PeriodicBin {
 /// Of the bin coordinates -reach .. count - 1 + reach.
 void fill_periodic_bins(int count, int reach, std::vector<PeriodicBin>& bins) {
   bins.clear();
-  for (int place = -reach; place < count + reach; ++place) {
-    const int shift = place >= 0 ? place / count : -((count - 1 - place) / count);
-    bins.push_back({place - shift * count, shift});
+  for (int outside = -reach; outside < count + reach; ++outside) {
+    const int shift = outside >= 0 ? outside / count : -((count - 1 - outside) / count);
+    bins.push_back({outside - shift * count, shift});
   }
 }
 

@@ -34,7 +34,7 @@ class PairGeometry {
     return {b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
   }
   /// Known to be apart without a look, and without force: so were all eight pairs of its block when forces were
-  /// computed last, for these places of the grains (at a rate 400 discs and 1,000 spheres 1.01 times as fast).
+  /// computed last, for these positions of the grains (at a rate 400 discs and 1,000 spheres 1.01 times as fast).
   bool is_apart(std::size_t p) const { return p >= near_ && touched_[p / 8] == 0; }
   /// Of outlines that are apart, by the direction of their distance.
   PlaceOf<shape> nearest(std::size_t p, const PlaceOf<shape>& apart) const {
@@ -83,10 +83,10 @@ class PairPlaces : public PairGeometry<shape> {
   /// Of outlines that are apart by less than `gap` (m) by the direction of the distance: an overlap < 0 else shows that
   /// they are apart, not how far.
   auto within(std::size_t p, double gap) const {
-    auto place = (*this)(p);
+    auto at = (*this)(p);
     if constexpr (!is_round(shape))
-      if (place.overlap < 0 && -place.overlap < gap) place = this->nearest(p, place);
-    return place;
+      if (at.overlap < 0 && -at.overlap < gap) at = this->nearest(p, at);
+    return at;
   }
 
  private:
@@ -113,7 +113,7 @@ void PairPlaces<shape>::find(const Model& model, const Assembly& assembly) {
   });
 }
 
-/// visit(p, place) for each listed pair that touches, in the order of every sum.
+/// visit(p, where it touches) for each listed pair that touches, in the order of every sum.
 template <Shape shape, class Visit>
 void each_touching(const Model& model, const Assembly& assembly, const Visit& visit) {
   const PairPlaces<shape> pair(model, assembly);

@@ -71,9 +71,9 @@ double next_skin(const Model& model, const ListState& list) {
 }
 
 Vector3 listed_place(const Model& model, const Assembly& assembly, std::size_t g) {
-  Vector3 place = assembly.position(model, g);
-  if (keeps_axis(model.shape)) place[2] = noted_axis(assembly.orientation(model, g));
-  return place;
+  Vector3 position = assembly.position(model, g);
+  if (keeps_axis(model.shape)) position[2] = noted_axis(assembly.orientation(model, g));
+  return position;
 }
 
 double listed_gap(const Model& model, const Assembly& assembly) {

@@ -1,4 +1,4 @@
-// A rigid body that moves freely (Li et al. 2023, eq. 13, 14): mass, inertia, place, orientation, velocity, angular
+// A rigid body that moves freely (Li et al. 2023, eq. 13, 14): mass, inertia, position, orientation, velocity, angular
 // momentum.
 //
 //   m dv/dt = f,  dL/dt = t,  w = R I^-1 R^T L

@@ -196,9 +196,9 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
     spins_[k] = rock.body.spin();
     speeds_[k] = rock.body.velocity.norm() + spins_[k].norm() * radius_of(*this, rock);
   }
-  const auto velocity_at = [&](int k, const Vec<D>& place) -> Vec<D> {
+  const auto velocity_at = [&](int k, const Vec<D>& position) -> Vec<D> {
     const auto& body = all[std::size_t(k)].body;
-    return body.velocity + spun<D>(spins_[std::size_t(k)], place - body.centre);
+    return body.velocity + spun<D>(spins_[std::size_t(k)], position - body.centre);
   };
   touching = 0;
   double power = 0;
@@ -256,9 +256,9 @@ template <int D>
 void Rocks<D>::keep_ghosts(std::vector<Ghost>& now) {
   auto next = now.begin();
   for (auto& old : ghosts) {
-    const auto place = std::pair(old.point, old.rock);
-    while (next != now.end() && std::pair(next->point, next->rock) < place) ++next;
-    if (next != now.end() && std::pair(next->point, next->rock) == place)
+    const auto key = std::pair(old.point, old.rock);
+    while (next != now.end() && std::pair(next->point, next->rock) < key) ++next;
+    if (next != now.end() && std::pair(next->point, next->rock) == key)
       next->contact = old.contact, next->velocity = old.velocity, next->lasts = true;
     else
       ghost_loss += old.contact.tangential_energy(ghost_constants(old.rock, balls[std::size_t(old.point)]));
@@ -314,9 +314,9 @@ double Rocks<D>::fastest() const {
 }
 
 template <int D>
-double Rocks<D>::distance(const Rock<D>& rock, const Vec<D>& place, double reach) const {
+double Rocks<D>::distance(const Rock<D>& rock, const Vec<D>& position, double reach) const {
   const auto& shape = shapes[std::size_t(rock.shape)];
-  const Vec<D> r = place - rock.body.centre;
+  const Vec<D> r = position - rock.body.centre;
   const double beyond = r.norm() - shape.bounding_radius();
   if (shape.is_sphere() || beyond > reach) return beyond;
   Vec<D> outward;

@@ -108,8 +108,8 @@ class Rocks {
 
   /// Shapes of bodies as rocks need them; after any change of bodies.
   void prepare_walls(const Bodies<D>& bodies);
-  /// m, of a place from the surface of a rock; where it is more than `reach`, some distance beyond that.
-  double distance(const Rock<D>& rock, const Vec<D>& place, double reach) const;
+  /// m, of a position from the surface of a rock; where it is more than `reach`, some distance beyond that.
+  double distance(const Rock<D>& rock, const Vec<D>& position, double reach) const;
   /// Pairs of rocks whose bounding spheres are this near (m) or nearer, in order.
   std::vector<std::pair<int, int>> rocks_within(double margin) const;
   /// Finds what may touch within a step of dt (s). `walls`: those at the time now.
@@ -149,10 +149,10 @@ class Rocks {
     Mat<D> mobility;       ///< m/s of N s, of soil and rock together
     Mat<D> resistance;     ///< its inverse
     double gap;            ///< m, to the soil
-    std::size_t place;     ///< number in the outline of the rock; at_node: it is a node in the rock
+    std::size_t index;     ///< number in the outline of the rock; at_node: it is a node in the rock
   };
   static constexpr std::size_t at_node = std::size_t(-1);
-  /// N, of each rock at each place of its outline on the soil, at the end of the step before, along its principal
+  /// N, of each rock at each point of its outline on the soil, at the end of the step before, along its principal
   /// axes: what the sweeps over surface points start from.
   std::vector<std::vector<Vec<D>>> pressed;
   std::vector<Touched> surface;  ///< rock by rock

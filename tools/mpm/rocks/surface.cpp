@@ -31,9 +31,9 @@ void Rocks<D>::predict_motion(const Vec<D>& gravity, double dt) {
 template <int D>
 void Rocks<D>::press(std::size_t point, Grid<D>& grid) {
   auto& here = surface[point];
-  if (here.place == at_node) return;
+  if (here.index == at_node) return;
   const auto number = std::size_t(here.soil.owner);
-  here.soil.now = step * to_world<D>(all[number].body.orientation, pressed[number][here.place]);
+  here.soil.now = step * to_world<D>(all[number].body.orientation, pressed[number][here.index]);
   push(point, here.soil.now, grid, true);
 }
 
@@ -45,9 +45,9 @@ void Rocks<D>::forget_pressed() {
 template <int D>
 void Rocks<D>::keep_pressed() {
   for (const auto& here : surface) {
-    if (here.place == at_node) continue;
+    if (here.index == at_node) continue;
     const auto number = std::size_t(here.soil.owner);
-    pressed[number][here.place] = to_body<D>(all[number].body.orientation, Vec<D>(here.soil.now / step));
+    pressed[number][here.index] = to_body<D>(all[number].body.orientation, Vec<D>(here.soil.now / step));
   }
 }
 
@@ -70,7 +70,7 @@ template <int D>
 void Rocks<D>::hold(std::size_t k, Grid<D>& grid, bool end) {
   auto& here = surface[k];
   auto& point = here.soil;
-  if (!end && here.place != at_node) return;
+  if (!end && here.index != at_node) return;
   const auto& moved = motion[std::size_t(point.owner)];
   Vec<D> relative = point.velocity(grid, end) - moved.velocity - spun<D>(moved.spin, here.r);
   relative -= here.mobility * point.now;  // without this point's impulse

@@ -50,13 +50,13 @@ struct Rocks<D>::FoundOnRock {
   bool near_soil = false;
   std::vector<Touched> points;
 
-  void add(const SurfacePoint<D>& point, const Rigid<D>& rock, const Vec<D>& r, double gap, std::size_t place) {
+  void add(const SurfacePoint<D>& point, const Rigid<D>& rock, const Vec<D>& r, double gap, std::size_t index) {
     const Mat<D> mobility = point.mobility * Mat<D>::Identity() + rock.mobility(r, r);
-    points.push_back({point, r, mobility, mobility.inverse(), std::max(0.0, gap), place});
+    points.push_back({point, r, mobility, mobility.inverse(), std::max(0.0, gap), index});
   }
 };
 
-/// visit(number of a node in the grid, its place from `centre`) for all in the ball about it, x fastest.
+/// visit(number of a node in the grid, its position from `centre`) for all in the ball about it, x fastest.
 template <int D, class Visit>
 void each_node_near(const Grid<D>& grid, const Vec<D>& centre, double radius, const Visit& visit) {
   typename Grid<D>::Index first, last;
@@ -74,10 +74,10 @@ void each_node_near(const Grid<D>& grid, const Vec<D>& centre, double radius, co
   }
 }
 
-/// Where a point of soil ends at a rock: place from the centre of the rock, normal, gap (m).
+/// Where a point of soil ends at a rock: position from the centre of the rock, normal, gap (m).
 template <int D>
 struct Foot {
-  Vec<D> place, normal;
+  Vec<D> position, normal;
   double gap;
 };
 
@@ -125,14 +125,14 @@ class SoilEnds {
   double slack_, reach_ = 0;
 };
 
-/// m, from a place on a rock to the soil, whose end is plane about the foot of each point, as far as `near`: the
+/// m, from a point on a rock to the soil, whose end is plane about the foot of each point, as far as `near`: the
 /// rounded edge of a block stands over it. Soil under a block does not touch its front: their normals differ.
 template <int D>
-double gap_at(const std::vector<Foot<D>>& feet, double near, const Vec<D>& place, const Vec<D>& normal) {
+double gap_at(const std::vector<Foot<D>>& feet, double near, const Vec<D>& point, const Vec<D>& normal) {
   double gap = 1e300;
   for (const auto& foot : feet) {
-    const bool about = (foot.place - place).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
-    if (about) gap = std::min(gap, foot.gap + foot.normal.dot(foot.place - place));
+    const bool about = (foot.position - point).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
+    if (about) gap = std::min(gap, foot.gap + foot.normal.dot(foot.position - point));
   }
   return gap;
 }
@@ -173,13 +173,13 @@ void Rocks<D>::detect_soil(const Grid<D>& grid, const Planes<D>& planes, Shape s
       point.mobility = 1 / grid.nodes[std::size_t(node)].mass;
       here.add(point, rock.body, r, gap, at_node);
     });
-    const auto& places = kept_outline(rock.shape);
-    pressed[std::size_t(k)].resize(places.size(), Vec<D>::Zero());
-    for (std::size_t number = 0; number < places.size(); ++number) {
-      const auto& place = places[number];
-      const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
+    const auto& around = kept_outline(rock.shape);
+    pressed[std::size_t(k)].resize(around.size(), Vec<D>::Zero());
+    for (std::size_t number = 0; number < around.size(); ++number) {
+      const auto& corner = around[number];
+      const Vec<D> r = to_world<D>(rock.body.orientation, corner.at);
       SurfacePoint<D> point;
-      point.normal = to_world<D>(rock.body.orientation, place.normal);
+      point.normal = to_world<D>(rock.body.orientation, corner.normal);
       const double gap = gap_at<D>(feet, near, r, point.normal);
       typename Grid<D>::Index nearest;
       const Vec<D> at = rock.body.centre + r;

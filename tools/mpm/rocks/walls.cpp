@@ -18,7 +18,7 @@ Gap<D> gap_to_plane(const Placed<D>& rock, const Vec<D>& point, const Vec<D>& no
 }
 
 /// Of a rock and ground: a ball's from its middle. Of others at the point of the rock that is lowest along the normal
-/// of the ground below it, in turns, and at the place of the ground that is nearest to the rock's middle, for faces
+/// of the ground below it, in turns, and at the point of the ground that is nearest to the rock's middle, for faces
 /// over ridges: the least of these.
 template <int D>
 Gap<D> gap_to_terrain(const Placed<D>& rock, const Vec<D>& first, const Terrain<D>& ground) {
@@ -63,11 +63,11 @@ RockShape<3> box_polyhedron(const Vec<3>& half) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {
       const auto corner = [&](int u, int v) {
-        Vec<3> place;
-        place[axis] = side * half[axis];
-        place[(axis + 1) % 3] = u * side * half[(axis + 1) % 3];
-        place[(axis + 2) % 3] = v * half[(axis + 2) % 3];
-        return place;
+        Vec<3> point;
+        point[axis] = side * half[axis];
+        point[(axis + 1) % 3] = u * side * half[(axis + 1) % 3];
+        point[(axis + 2) % 3] = v * half[(axis + 2) % 3];
+        return point;
       };
       triangles.push_back({corner(-1, -1), corner(1, -1), corner(1, 1)});
       triangles.push_back({corner(-1, -1), corner(1, 1), corner(-1, 1)});
