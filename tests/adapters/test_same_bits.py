@@ -23,7 +23,7 @@ import micro_simulation  # noqa: E402  reads its environment
 import rvelab  # noqa: E402
 from mgis_client import Behaviour, Point, symmetric  # noqa: E402
 
-STEPS, AXIAL = 20, -(2.0**-12)
+STEPS, AXIAL = 30, -(2.0**-12)
 LIBRARY = ctypes.CDLL(library)
 FIRST = rvelab.Rve(folder / "discs.h5").sigma
 HELD = FIRST[0, 0]
