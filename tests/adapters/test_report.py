@@ -221,6 +221,8 @@ class Plane(Page):
         box = self.box("#stage")
         for part in [0.4 + 0.025 * k for k in range(9)]:
             self.browser.click(box["x"] + part * box["width"], box["y"] + box["height"] / 2)
+            if self.text("told"):
+                break  # a further one may meet a void
         self.assertRegex(self.text("told"), r"Grain \d+: mean stress of the grain [\d.]+ kPa")
         self.choose("#draw", "both")
 
