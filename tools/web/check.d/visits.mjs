@@ -88,11 +88,13 @@ async function liquefaction({ browser, address, folder, scratch }) {
   await fill(tab, words.fields.strain, 4);
   await packAndTest(tab);
   await picture(tab, folder, "3_liquefaction");
+  const told = await tab.evaluate(() => document.querySelector("#status").textContent);
   const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
   await tab.close();
   const p = rows.filter((row) => row.stage === rows.at(-1).stage).map((row) => Number(row.p_Pa));
   const least = Math.min(...p);
   claim(least < 0.8 * p[0], `p falls from ${p[0]} to ${least} Pa only`);
+  claim(told.includes("liquefied") === least < 1e-3 * p[0], `p falls from ${p[0]} to ${least} Pa, and the page says: ${told}`);
   return `p from ${(p[0] / 1e3).toFixed(1)} to at least ${(least / 1e3).toFixed(2)} kPa`;
 }
 

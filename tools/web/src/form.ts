@@ -33,10 +33,12 @@ export function formOf(): string {
       <label>${words.fields.pressures}<input name="pressures" inputmode="decimal" required></label>
       ${number("strain", "strain")}${number("seeds", "seeds")}
     </fieldset>
-    <div class="buttons"><button class="first" type="submit">${words.run}</button>
-      <button type="button" id="stop" disabled>${words.stop}</button></div>
-    <div id="mistakes" class="wrong" role="alert"></div>
-    <p id="status" class="soft" role="status" aria-live="polite">${words.ready}</p>
+    <div class="run">
+      <div class="buttons"><button class="first" type="submit">${words.run}</button>
+        <button type="button" id="stop" disabled>${words.stop}</button></div>
+      <div id="mistakes" class="wrong" role="alert"></div>
+      <p id="status" class="soft" role="status" aria-live="polite">${words.ready}</p>
+    </div>
   </form>`;
 }
 

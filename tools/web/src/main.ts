@@ -5,7 +5,7 @@ import { colours, CurveView, type Curve } from "./curves";
 import { csvOf, give } from "./files";
 import { formOf, SetUpForm } from "./form";
 import { GrainView } from "./grains";
-import { grainColumns, type Packed, type Picture, type Strength, type Tested } from "./messages";
+import { column, grainColumns, type Packed, type Picture, type Strength, type Tested } from "./messages";
 import { drawCircles, type Circle } from "./mohr";
 import { drawEnvelope, ProbePad } from "./probe";
 import { seldom } from "./seldom";
@@ -52,6 +52,7 @@ let curves: Curve[] = [];
 /** The circle of failure of each test, in the order of the tests; null of one that has none (yet). */
 let circles: (Circle | null)[] = [];
 let resolved = { recipe: "", protocol: "" };
+let liquefied = 0; // tests of this run that ended without pressure
 /** The laboratory whose grains are shown; it stays for what comes after a test. */
 let shown: Client | null = null;
 let others: Client[] = [];
@@ -134,6 +135,8 @@ async function oneTest(client: Client, { number, seed, pressure }: Job, watched:
     curve.rows.push(...note.rows);
     showCurves();
   });
+  const last = curve.rows[curve.rows.length - 1];
+  if (setUp.test === "undrained" && last && last[column.p] < 2 * pressure) liquefied += 1; // Pa of kPa: a thousandth ends it
   if (watched) resolved = { recipe: packed.recipe, protocol: tested.protocol ?? "" };
   circles[number] = { s: tested.peak_s / 1e3, t: tested.peak_t / 1e3, colour: curve.colour };
 }
@@ -155,6 +158,7 @@ async function runAll() {
   showCurves();
   const all = jobs.length;
   const begin = performance.now();
+  liquefied = 0;
   [shown, spare] = [spare ?? new Client(), null];
   others = Array.from({ length: Math.min(all - 1, Math.max(1, (navigator.hardwareConcurrency || 2) - 1), 7) }, () => new Client());
   allow(false);
@@ -167,7 +171,7 @@ async function runAll() {
   };
   try {
     await Promise.all([shown, ...others].map(work));
-    status(words.done(all, (performance.now() - begin) / 1e3));
+    status(words.done(all, (performance.now() - begin) / 1e3, liquefied));
     await afterTest();
   } catch (error) {
     if (!(error instanceof Stopped)) wrong([(error as Error).message]);

@@ -11,7 +11,9 @@ export const words = {
   ready: "Ready. Choose a soil and a test, then press “Pack and test”.",
   packing: (draw: number, voidRatio: number) => `Packing: trial ${draw}, void ratio ${voidRatio.toFixed(4)}`,
   testing: (done: number, all: number) => `Testing: ${done} of ${all} tests finished`,
-  done: (tests: number, seconds: number) => `${tests === 1 ? "1 test" : `${tests} tests`} in ${seconds.toFixed(1)} s`,
+  done: (tests: number, seconds: number, liquefied: number) =>
+    `${tests === 1 ? "1 test" : `${tests} tests`} in ${seconds.toFixed(1)} s` +
+    (liquefied === 0 ? "" : `; ${tests === 1 ? "it" : liquefied} ended early: the soil liquefied, its grains carry no pressure`),
   stopped: "Stopped. Tests that were finished are kept.",
   fields: {
     preset: "Soil",
