@@ -66,15 +66,21 @@ async function twoFrictions({ browser, address, folder, scratch }) {
   return `q at the end ${(first / 1e3).toFixed(1)} kPa, gone on with 5 degrees ${(other / 1e3).toFixed(1)} kPa`;
 }
 
+/** Packs, tests and takes the picture; the friction angle that the page tells, degrees. */
+async function testedAngle(tab, folder, name) {
+  await packAndTest(tab);
+  const [, phi] = await text(tab, angle, 10);
+  await picture(tab, folder, name);
+  return phi;
+}
+
 /** Dense discs at constant volume: their largest stress ratio is about that of drained tests, whatever the deviator does. */
 async function dense({ browser, address, folder }) {
   const { tab } = await open(browser, address);
   await choose(tab, words.fields.test, words.tests.undrained);
   await fill(tab, words.fields.grains, 200);
   await fill(tab, words.fields.strain, 4);
-  await packAndTest(tab);
-  const [, phi] = await text(tab, angle, 10);
-  await picture(tab, folder, "8_dense_undrained");
+  const phi = await testedAngle(tab, folder, "8_dense_undrained");
   await tab.close();
   claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees at constant volume`);
   return `friction angle ${phi} degrees`;
@@ -124,9 +130,7 @@ async function ellipses({ browser, address, folder }) {
   await choose(tab, words.fields.preset, "Bedded ellipses");
   await fill(tab, words.fields.grains, 200);
   await fill(tab, words.fields.strain, 4);
-  await packAndTest(tab);
-  const [, phi] = await text(tab, angle, 10);
-  await picture(tab, folder, "6_ellipses");
+  const phi = await testedAngle(tab, folder, "6_ellipses");
   await tab.close();
   claim(phi > 15 && phi < 50, `a friction angle of ${phi} degrees of ellipses`);
   return `friction angle ${phi} degrees`;
@@ -137,9 +141,7 @@ async function spheres({ browser, address, folder, scratch }) {
   await choose(tab, words.fields.preset, "Glass spheres");
   await fill(tab, words.fields.grains, 300);
   await fill(tab, words.fields.strain, 4);
-  await packAndTest(tab);
-  const [, phi] = await text(tab, angle, 10);
-  await picture(tab, folder, "7_spheres");
+  const phi = await testedAngle(tab, folder, "7_spheres");
   const rows = rowsOf(await saved(browser, tab, words.files.curve, scratch));
   await tab.close();
   claim(phi > 15 && phi < 45, `a friction angle of ${phi} degrees of spheres`);
