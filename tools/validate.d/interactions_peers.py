@@ -47,8 +47,9 @@ def built(folder):
         return program
     (folder / "lists/partial").mkdir(parents=True, exist_ok=True)
     (folder / "source.sources").write_text(SOURCES + "Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg\n")
+    (folder / "status").touch()  # apt would look for the source of the LAMMPS that is installed
     apt = ["apt-get", "-qq", "-o", f"Dir::Etc::SourceList={folder / 'none'}", "-o", f"Dir::Etc::SourceParts={folder}",
-           "-o", f"Dir::State::Lists={folder / 'lists'}"]
+           "-o", f"Dir::State::Lists={folder / 'lists'}", "-o", f"Dir::State::Status={folder / 'status'}"]
     subprocess.run([*apt, "update"], check=True)
     subprocess.run([*apt, "source", "--download-only", "--tar-only", "lammps"], cwd=folder, check=True)
     source = folder / "lammps"

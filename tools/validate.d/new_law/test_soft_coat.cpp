@@ -51,7 +51,7 @@ TEST_CASE("coats: trials, restarts, files and the tangent are as for all laws", 
     const std::string file = (std::filesystem::temp_directory_path() / "rvelab_coats.h5").string();
     for (int k = 0; k < 40; ++k) {  // the lattice is reduced on the way
       const Matrix3 sigma = undisturbed.apply(move, 0).stress;
-      io::write_specimen(file, restarted.specimen());
+      io::write_specimen(restarted.specimen(), file);
       restarted = Rve(io::read_specimen(file));
       REQUIRE(same_bits(restarted.apply(move, 0).stress, sigma));
       tried.attempt(-0.5 * move, 0);
