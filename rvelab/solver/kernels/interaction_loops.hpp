@@ -148,9 +148,8 @@ inline __attribute__((always_inline)) void interaction_motion(const StepConstant
   }
 }
 
-/// Force rows, and what they give to both grains. The last of four numbers is of no account. A list of rows that the
-/// grain loop gathered, as it does those of contacts, took 112 instructions a grain of 1,000 spheres with 2.6 bonds
-/// each; adding takes 43.
+/// Force rows, and what they give to both grains; the last of four numbers is of no account. Without the sums, where
+/// the grain loop gathered the rows as those of contacts, it took 106 instructions a grain more and this loop 55 less.
 template <int W, class V>
 inline __attribute__((always_inline)) void add_to_grains(const InteractionArrays& p, long at, const Triple<V>& force,
                                                          const Triple<V>& torque_j, const Triple<V>& torque_i) {
