@@ -105,7 +105,7 @@ struct Beam {
   }
 
   /// Of bonds of which one is broken or breaks: keeps how, and returns it. Most blocks of lanes have none and are
-  /// spared the stores and selections (20 of some 560 instructions of four parallel bonds).
+  /// spared the stores and selections.
   template <bool Advance, class V>
   static inline __attribute__((always_inline)) V keep_broken(const InteractionArrays& p, long at, V was, V how) {
     const V now = (was == 0.0) ? how : was;

@@ -87,7 +87,7 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
 }
 
 /// Resultants of a chunk, global damping and the factors of the local one; as for discs, this pass ends with the roots.
-/// What interactions give comes here, where a compiler has both (in the gathering pass: 8 instructions a grain more).
+/// What interactions give comes here, where a compiler has both (in the gathering pass: 5 instructions a grain more).
 template <class T, bool interactions>
 inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, const GrainArrays& g, long first,
                                                         long count, const TaskRows& forces, const TaskRows& torques,
