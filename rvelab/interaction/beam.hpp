@@ -104,6 +104,15 @@ struct Beam {
     return Criterion::template broken_by<V>(s, load);
   }
 
+  /// Of bonds of which one is broken or breaks: keeps how, and returns it. Most blocks of lanes have none and are
+  /// spared the stores and selections.
+  template <bool Advance, class V>
+  static inline __attribute__((always_inline)) V keep_broken(const InteractionArrays& p, long at, V was, V how) {
+    const V now = (was == 0.0) ? how : was;
+    if constexpr (Advance) store_as(p.column[broken] + at, now);
+    return now;
+  }
+
   template <bool Advance, class V>
   static inline __attribute__((always_inline)) PlaneForces<V> in_plane(const InteractionArrays& p, long at,
                                                                        const PlaneMotion<V>& m) {
@@ -111,7 +120,8 @@ struct Beam {
     const V r = load_as<V>(p.column[radius] + at), area = (2.0 * p.thickness) * r,
             inertia = area * (r * r) * (1.0 / 3.0);
     const V kn = load_as<V>(p.column[normal_stiffness] + at), ks = load_as<V>(p.column[shear_stiffness] + at);
-    V was = load_as<V>(p.column[broken] + at);
+    const V was = load_as<V>(p.column[broken] + at);
+    V how = zero;
     PlaneForces<V> f;
     f.normal = (kn * area) * (load_as<V>(p.column[length] + at) - m.length);
     f.tangential = load_as<V>(p.column[shear_force] + at);
@@ -119,18 +129,19 @@ struct Beam {
     if constexpr (Advance) {
       f.tangential = f.tangential - (ks * area) * m.slip;
       f.moment = f.moment - (kn * inertia) * m.turn;
-      const V how = broken_by<V>(p, at, {f.normal, f.tangential * f.tangential, f.moment * f.moment, zero, r, area, 3});
-      book_release(p, released, at, was, how, [&](auto energy) {
-        return energy(f.normal * f.normal, kn * area) + energy(f.tangential * f.tangential, ks * area) +
-               energy(f.moment * f.moment, kn * inertia);
-      });
-      was = (was == 0.0) ? how : was;
-      store_as(p.column[broken] + at, was);
+      how = broken_by<V>(p, at, {f.normal, f.tangential * f.tangential, f.moment * f.moment, zero, r, area, 3});
     }
-    const auto intact = was == 0.0;
-    f.normal = intact ? f.normal : zero;
-    f.tangential = intact ? f.tangential : zero;
-    f.moment = intact ? f.moment : zero;
+    if (any_of(was + how != zero)) {
+      if constexpr (Advance)
+        book_release(p, released, at, was, how, [&](auto energy) {
+          return energy(f.normal * f.normal, kn * area) + energy(f.tangential * f.tangential, ks * area) +
+                 energy(f.moment * f.moment, kn * inertia);
+        });
+      const auto intact = keep_broken<Advance>(p, at, was, how) == zero;
+      f.normal = intact ? f.normal : zero;
+      f.tangential = intact ? f.tangential : zero;
+      f.moment = intact ? f.moment : zero;
+    }
     if constexpr (Advance) {
       store_as(p.column[shear_force] + at, f.tangential);
       store_as(p.column[bending_moment + 2] + at, f.moment);
@@ -146,29 +157,31 @@ struct Beam {
     const Triple<V> none = {zero, zero, zero};
     const V r = load_as<V>(p.column[radius] + at), area = pi * (r * r), inertia = area * (r * r) * 0.25;
     const V kn = load_as<V>(p.column[normal_stiffness] + at), ks = load_as<V>(p.column[shear_stiffness] + at);
-    V was = load_as<V>(p.column[broken] + at), twist = load_as<V>(p.column[twisting_moment] + at);
+    const V was = load_as<V>(p.column[broken] + at);
+    V how = zero, twist = load_as<V>(p.column[twisting_moment] + at);
     Triple<V> shear = turned[0], bending = turned[1];
     SpaceForces<V> f;
     f.normal = (kn * area) * (load_as<V>(p.column[length] + at) - m.length);
     if constexpr (Advance) {
-      shear = plus(shear, -(ks * area), m.slip);
+      shear = minus(shear, ks * area, m.slip);
       const V about = dot(m.n, m.turn);
-      bending = plus(bending, -(kn * inertia), plus(m.turn, -about, m.n));
+      bending = minus(bending, kn * inertia, minus(m.turn, about, m.n));
       twist = twist - (ks * (2.0 * inertia)) * about;
-      const V how =
-          broken_by<V>(p, at, {f.normal, dot(shear, shear), dot(bending, bending), magnitude_of(twist), r, area, 4});
-      book_release(p, released, at, was, how, [&](auto energy) {
-        return (energy(f.normal * f.normal, kn * area) + energy(dot(shear, shear), ks * area)) +
-               (energy(dot(bending, bending), kn * inertia) + energy(twist * twist, (2.0 * ks) * inertia));
-      });
-      was = (was == 0.0) ? how : was;
-      store_as(p.column[broken] + at, was);
+      how = broken_by<V>(p, at, {f.normal, dot(shear, shear), dot(bending, bending), magnitude_of(twist), r, area, 4});
     }
-    const auto intact = was == 0.0;
-    f.normal = intact ? f.normal : zero;
-    f.tangential = chosen(intact, shear, none);
-    bending = chosen(intact, bending, none);
-    twist = intact ? twist : zero;
+    if (any_of(was + how != zero)) {
+      if constexpr (Advance)
+        book_release(p, released, at, was, how, [&](auto energy) {
+          return (energy(f.normal * f.normal, kn * area) + energy(dot(shear, shear), ks * area)) +
+                 (energy(dot(bending, bending), kn * inertia) + energy(twist * twist, (2.0 * ks) * inertia));
+        });
+      const auto intact = keep_broken<Advance>(p, at, was, how) == zero;
+      f.normal = intact ? f.normal : zero;
+      shear = chosen(intact, shear, none);
+      bending = chosen(intact, bending, none);
+      twist = intact ? twist : zero;
+    }
+    f.tangential = shear;
     f.moment = plus(bending, twist, m.n);
     if constexpr (Advance) {
       store_triple(p.column + shear_force, at, f.tangential);

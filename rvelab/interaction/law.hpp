@@ -97,10 +97,10 @@ struct InteractionArrays {
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< m
   double* column[most_interaction_columns] = {};          ///< the fields of the law, one after the other
   double thickness = 0;                                   ///< m, in the plane
-  /// Force rows behind those of the pairs, and alike: in the plane {fx, fy, T_j, T_i}, in space {fx, fy, fz, -gap/2, n
-  /// x f_t, 0} with the moment on j apart.
+  /// Force rows behind those of the pairs: in the plane {fx, fy, T_j, T_i}, in space {fx, fy, fz, -, T_j, -}.
   double* force = nullptr;
-  double* moment[3] = {};
+  /// Resultants of the grains, as long as grain rows and where these are; interactions add to them (GrainArrays).
+  double* resultants = nullptr;
 };
 
 namespace {

@@ -40,6 +40,10 @@ inline __attribute__((always_inline)) Triple<V> plus(const Triple<V>& a, V facto
   return {a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
 }
 template <class V>
+inline __attribute__((always_inline)) Triple<V> minus(const Triple<V>& a, V factor, const Triple<V>& b) {
+  return {a.x - factor * b.x, a.y - factor * b.y, a.z - factor * b.z};
+}
+template <class V>
 inline __attribute__((always_inline)) Triple<V> times(V factor, const Triple<V>& b) {
   return {factor * b.x, factor * b.y, factor * b.z};
 }

@@ -120,7 +120,7 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.thickness = s.cell.lattice(2, 2);
   const auto kernels_with = [&](bool dashpot) {
     return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
-                        model.contact.hertz_radius, model.dimension() == 3 && has_any(s), all_ellipsoids(s.grains)});
+                        model.contact.hertz_radius, all_ellipsoids(s.grains)});
   };
   model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
   model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);
@@ -238,7 +238,8 @@ GrainArrays arrays_of(const Model& model, Assembly& assembly) {
           assembly.pairs.gathered.data(),
           assembly.pairs.tasks.data(),
           model.turn_first.data(),
-          model.turn_second.data()};
+          model.turn_second.data(),
+          assembly.pairs.interactions.empty() ? nullptr : assembly.pairs.resultants.data()};
 }
 
 }  // namespace rvelab

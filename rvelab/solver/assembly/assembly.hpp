@@ -99,7 +99,7 @@ struct InteractionTable {
   // What follows from these, the grains and the pairs.
   std::vector<std::int32_t> row_i, row_j;
   std::vector<Buffer> image_number, radius;  ///< three, and those of i and of j
-  std::size_t row_at = 0;                    ///< the first of its force rows, and in space of its moments, in PairTable
+  std::size_t row_at = 0;                    ///< the first of its force rows in PairTable
 
   std::size_t padded() const { return i.size(); }
 };
@@ -131,6 +131,7 @@ struct PairTable {
   std::vector<std::int32_t> gathered, slots_beyond;
   /// Interactions other than contacts, by kind, those that there are: their force rows stand behind those of the pairs.
   std::vector<InteractionTable> interactions;
+  Buffer resultants;  ///< what they give to the grains (kernels/configuration.hpp); empty without them
 
   std::size_t padded() const { return i.size(); }
 };

@@ -31,11 +31,6 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
     ++pairs_of[as_j(std::size_t(pairs.j[q]))];
     ++pairs_of[as_i(std::size_t(pairs.i[q]))];
   }
-  for (const InteractionTable& t : pairs.interactions)
-    for (std::size_t k = 0; k < t.count; ++k) {
-      ++pairs_of[as_j(std::size_t(t.j[k]))];
-      ++pairs_of[as_i(std::size_t(t.i[k]))];
-    }
   const std::size_t blocks = padded_grains / 2;
   pairs.slot_begin.assign(blocks + 1, 0);
   pairs.tasks.resize(4 * blocks);
@@ -62,13 +57,6 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
       next[task] += 4;
     }
   }
-  // Behind the pairs of each grain.
-  for (const InteractionTable& t : pairs.interactions)
-    for (std::size_t k = 0; k < t.count; ++k)
-      for (const std::size_t task : {as_j(std::size_t(t.j[k])), as_i(std::size_t(t.i[k]))}) {
-        pairs.slots[std::size_t(next[task])] = force_row * std::int32_t(t.row_at + k);
-        next[task] += 4;
-      }
   leave_out_pairs_beyond(force_row, pairs);
 }
 

@@ -34,8 +34,7 @@ void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t 
         if ((task < chunk) != as_j) continue;
         for (auto slot = pairs.slot_begin[block]; slot < pairs.slot_begin[block + 1]; ++slot) {
           const auto pair = std::size_t(pairs.slots[4 * std::size_t(slot) + k % 4] / force_row);
-          if (pair >= pairs.listed)
-            break;  // interactions, or padding: tasks of the block have more pairs than this one
+          if (pair >= pairs.listed) break;  // padding: tasks of the block have more pairs than this one
           at(start + (as_j ? task : task - chunk), pair, as_j);
         }
       }

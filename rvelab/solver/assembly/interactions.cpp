@@ -35,8 +35,7 @@ InteractionArrays arrays_of(const Model& model, PairTable& pairs, InteractionTab
   for (std::size_t k = 0; k < table.column.size(); ++k) a.column[k] = table.column[k].data();
   a.thickness = model.dimension() == 2 ? model.thickness : 0;
   a.force = pairs.force.data() + table.row_at * std::size_t(force_row_length(model.dimension()));
-  if (model.dimension() == 3)
-    for (std::size_t k = 0; k < 3; ++k) a.moment[k] = pairs.moment[k].data() + table.row_at;
+  a.resultants = pairs.resultants.data();
   return a;
 }
 
@@ -224,15 +223,13 @@ void prepare_interactions(Specimen& s) {
   });
 }
 
-std::size_t interaction_rows(const PairTable& pairs) {
-  std::size_t rows = 0;
-  for (const InteractionTable& t : pairs.interactions) rows += t.padded();
-  return rows;
-}
-
 void derive_interactions(const Model& model, PairTable& pairs) {
   std::size_t row = pairs.padded();
-  pairs.force.assign((row + interaction_rows(pairs)) * std::size_t(force_row_length(model.dimension())), 0.0);
+  std::size_t rows = row;
+  for (const InteractionTable& t : pairs.interactions) rows += t.padded();
+  pairs.force.assign(rows * std::size_t(force_row_length(model.dimension())), 0.0);
+  pairs.resultants.assign(
+      pairs.interactions.empty() ? 0 : padded_to_lanes(model.size()) * std::size_t(model.row_length()), 0.0);
   for (InteractionTable& t : pairs.interactions) {
     if (model.kernels_at(Loading::quasi_static).interactions[t.kind] == nullptr)
       throw InputError("this build has no kernels of interactions; use the program");
@@ -255,6 +252,7 @@ void derive_interactions(const Model& model, PairTable& pairs) {
 
 namespace {
 
+/// The kernels add to the resultants kind by kind, in the order of the tables, on one thread: the same sums anywhere.
 void run(const Model& model, const InteractionKernel* kernels, const StepConstants& constants, Assembly& assembly) {
   for (InteractionTable& t : assembly.pairs.interactions)
     kernels[t.kind](constants, arrays_of(model, assembly.pairs, t), assembly.rows.data(), 0, long(t.padded()));
@@ -268,6 +266,7 @@ void update_interactions(const Model& model, const Kernels& kernels, const StepC
 }
 
 void evaluate_interactions(const Model& model, const StepConstants& constants, Assembly& assembly) {
+  std::fill(assembly.pairs.resultants.begin(), assembly.pairs.resultants.end(), 0.0);
   run(model, model.kernels_at(assembly.state.last_step.loading).evaluate_interactions, constants, assembly);
 }
 
@@ -299,10 +298,8 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
           a.moment_i = {0, 0, row[3]};
         } else {
           a.force = {row[0], row[1], row[2]};
-          const Vector3 turning(row[4], row[5], row[6]);
-          for (int c = 0; c < 3; ++c) a.moment_j[c] = assembly.pairs.moment[c][t.row_at + k];
-          a.moment_i = -a.moment_j - a.arm_i * turning;
-          a.moment_j -= a.arm_j * turning;
+          a.moment_j = {row[4], row[5], row[6]};
+          a.moment_i = -a.moment_j - a.branch.cross(a.force);  // moments balance
         }
         a.normal_force = a.force.dot(a.normal);
         const double thickness = plane ? model.thickness : 0;

@@ -20,8 +20,6 @@ void prepare_interactions(Specimen& specimen);
 void follow_reduction(const Reduction& reduction, int dimension, Interactions& interactions);
 void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions);
 
-/// Force rows that they take.
-std::size_t interaction_rows(const PairTable& pairs);
 /// Derived arrays, with the force rows of pairs and interactions (zero).
 void derive_interactions(const Model& model, PairTable& pairs);
 

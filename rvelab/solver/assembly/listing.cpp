@@ -140,11 +140,9 @@ void fill(const Model& model, double skin, const std::vector<Contact>& carried, 
   }
   prepare_interactions(model, assembly, listed, skin, interactions);
   set_interactions(model, interactions, pairs);
-  // The grain loop reads a moment beside each force row in space.
-  const std::size_t more = model.dimension() == 3 ? interaction_rows(pairs) : 0;
   for (int component = 0; component < model.tangential_components(); ++component) {
     pairs.tangential[component].assign(padded, 0.0);
-    if (model.contact.rolling || more > 0) pairs.moment[component].assign(padded + more, 0.0);
+    if (model.contact.rolling) pairs.moment[component].assign(padded, 0.0);
   }
   if (model.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
   in_pieces(n, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {

@@ -11,7 +11,7 @@ std::size_t bytes_of(const PairTable& t) {
   std::size_t sum = bytes(t.order, t.touched, t.shifted, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots,
                           t.tasks, t.gathered, t.slots_beyond) +
                     bytes(t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force,
-                          t.radius_i, t.radius_j, t.solid);
+                          t.radius_i, t.radius_j, t.solid, t.resultants);
   for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
   for (const InteractionTable& each : t.interactions) {
     sum += bytes(each.i, each.j, each.image, each.row_i, each.row_j);

@@ -21,8 +21,6 @@ struct KernelConfiguration {
   Slip slip = Slip::consistent;
   bool dashpot = false;
   HertzRadius hertz_radius = HertzRadius::equivalent;
-  bool moments =
-      false;  ///< interactions with moments act in space: the grain loop adds those up, as it does with rolling
   bool ellipsoids = false;  ///< superellipsoids with exponents of 2 alone
 };
 
@@ -102,6 +100,9 @@ struct GrainArrays {
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
   const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
+  /// What interactions other than contacts give to each grain, as long as grain rows, or null: in the plane {fx, fy, T,
+  /// ...}, in space {fx, fy, fz, -, T, -, ...}. The grain loop takes them: it leaves zeros for the next sub-step.
+  double* resultants = nullptr;
   /// Called before a chunk is gathered, with the end of the chunk, where pairs are updated just in time
   /// (loading/sweep.hpp).
   void (*before_chunk)(void* sweep, long end) = nullptr;

@@ -52,5 +52,13 @@ struct alignas(64) TaskRows {
   inline __attribute__((always_inline)) const double* as_i(long k) const { return at + 4 * (chunk_grains + k); }
 };
 
+/// Four doubles, of which zeros are left.
+template <int W>
+inline __attribute__((always_inline)) typename Lanes<W>::Quad taken(double* from) {
+  const auto value = quad_at<W>(from);
+  store_as(from, Lanes<W>::broadcast(0.0));
+  return value;
+}
+
 }  // namespace
 }  // namespace rvelab

@@ -36,7 +36,7 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
 /// Resultants of a chunk: the sum as j, less forces and plus T_i of the sum as i. Then global damping and the factor of
 /// the local one. Two passes, the first of which ends with the root, as in the pair loops (time of the grain loop,
 /// AVX2: 1 with rows and damping in passes of their own, 0.93 so).
-template <class T, int length>
+template <class T, int length, bool interactions>
 inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, const GrainArrays& g, long first,
                                                       long count, const TaskRows& sums, DiscColumns& s,
                                                       PartialSums<T::W>& lost_globally) {
@@ -51,6 +51,9 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
       typename L::Quad net[W];
       for (int lane = 0; lane < W; ++lane)
         net[lane] = L::add(quad_at<W>(sums.as_j(k + lane)), L::seen_from_i(quad_at<W>(sums.as_i(k + lane))));
+      if constexpr (interactions)
+        for (int lane = 0; lane < W; ++lane)
+          net[lane] = L::add(net[lane], taken<W>(g.resultants + length * (at + lane)));
       V resultant[4], a[4];
       L::transpose(net, resultant);
       V fx = resultant[0], fy = resultant[1];
@@ -172,7 +175,10 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
     if (g.before_chunk != nullptr) g.before_chunk(g.sweep, chunk + count);
     gather_disc_forces<narrow>(g, p, chunk, count, task_sums);
-    damp_discs<T, Rows::length>(c, g, chunk, count, task_sums, s, lost_globally);
+    if (g.resultants == nullptr)
+      damp_discs<T, Rows::length, false>(c, g, chunk, count, task_sums, s, lost_globally);
+    else
+      damp_discs<T, Rows::length, true>(c, g, chunk, count, task_sums, s, lost_globally);
     move_discs<T, Rows::length, Rows::turns>(c, g, chunk, count, s, momentum, fastest, lost_locally);
     if constexpr (Rows::turns) Rows::template turn<T>(c, g, chunk, count, s, fastest_with_turn);
   }

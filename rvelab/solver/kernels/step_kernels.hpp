@@ -141,7 +141,7 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
   if constexpr (Pairs::By::rigid) {
     kernels.lanes = W;
     return;
-  } else if (key.rolling || key.moments)
+  } else if (key.rolling)
     set_grain_kernels<Pairs, W, true>(kernels);
   else
     set_grain_kernels<Pairs, W, false>(kernels);

@@ -18,6 +18,7 @@ void each_changed(Pairs& pairs, const Each& each) {
   }
   each(pairs.root_overlap);
   each(pairs.force);
+  each(pairs.resultants);
   for (auto& interactions : pairs.interactions)
     for (auto& column : interactions.column) each(column);
 }
