@@ -18,11 +18,11 @@ struct Exit : std::exception {
 
 /// The subcommands, one file each: options, help with examples, and what they do when the command line has been read.
 /// They throw InputError for a mistake of the user's, Exit for an exit code, anything else if the run failed.
-void add_pack(CLI::App&app), add_import(CLI::App&app), add_inspect(CLI::App&app), add_measure(CLI::App&app),
-    add_probe(CLI::App&app), add_run(CLI::App&app), add_recover(CLI::App&app), add_seal(CLI::App&app),
-    add_calibrate(CLI::App&app), add_critical(CLI::App&app), add_fit(CLI::App&app), add_study(CLI::App&app),
-    add_report(CLI::App&app), add_compare(CLI::App&app), add_export(CLI::App&app), add_protocols(CLI::App&app),
-    add_keys(CLI::App&app), add_bench(CLI::App&app);
+void add_pack(CLI::App&app), add_clump(CLI::App&app), add_import(CLI::App&app), add_inspect(CLI::App&app),
+    add_measure(CLI::App&app), add_probe(CLI::App&app), add_run(CLI::App&app), add_recover(CLI::App&app),
+    add_seal(CLI::App&app), add_calibrate(CLI::App&app), add_critical(CLI::App&app), add_fit(CLI::App&app),
+    add_study(CLI::App&app), add_report(CLI::App&app), add_compare(CLI::App&app), add_export(CLI::App&app),
+    add_protocols(CLI::App&app), add_keys(CLI::App&app), add_bench(CLI::App&app);
 
 /// The options that several subcommands have.
 void add_json(CLI::App& command, bool& json);

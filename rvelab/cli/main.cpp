@@ -98,8 +98,8 @@ int carried_out(int argc, char** argv) {
       "`rvelab SUBCOMMAND --help` explains a subcommand, with examples. A first test:\n"
       "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5");
-  for (const auto add : {add_pack, add_import, add_inspect, add_measure, add_probe, add_run, add_recover, add_seal,
-                         add_calibrate, add_critical, add_fit, add_study, add_report, add_compare, add_export,
+  for (const auto add : {add_pack, add_clump, add_import, add_inspect, add_measure, add_probe, add_run, add_recover,
+                         add_seal, add_calibrate, add_critical, add_fit, add_study, add_report, add_compare, add_export,
                          add_protocols, add_keys, add_bench})  // in the order of the help
     add(app);
   if (argc < 2) {

@@ -1,0 +1,30 @@
+// The surface of a grain as triangles, read from STL: as scanners, tomography and CAD programs write grains.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "rvelab/grains/union.hpp"
+
+namespace rvelab {
+
+/// A closed surface whose triangles turn counter-clockwise as seen from outside; any unit of length.
+struct Mesh {
+  std::vector<Eigen::Vector3d> corners;
+  std::vector<std::array<int, 3>> triangles;  ///< indices into corners
+};
+
+/// Of the bytes of an STL file, ASCII or binary; corners nearer than 1e-6 of the largest extent are one. InputError
+/// with the remedy: no STL, numbers that are not finite, a surface that is not closed, no volume. `where` stands
+/// before it.
+Mesh read_stl(const std::string& bytes, const std::string& where);
+
+/// Of the body inside, density 1: exact, by the tetrahedra between its triangles and a point.
+MassProperties properties_of(const Mesh& mesh);
+
+/// Distance of a point to the surface; `farthest`: more than this is not looked for, and returned.
+double distance_to(const Mesh& mesh, const Eigen::Vector3d& point, double farthest);
+
+}  // namespace rvelab
