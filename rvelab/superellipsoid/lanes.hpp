@@ -8,54 +8,33 @@ namespace rvelab {
 namespace {
 
 /// Overlaps, m, below 0 beyond rounding for pairs that are apart (then no more than a direction that shows it); n from
-/// i to j; the middle of the points of both, from the centres of i; radii of curvature there.
+/// i to j; the middle of the points of both, from the centres of i.
 template <class V>
 struct ContactsOf {
   V overlap;
   Triple<V> n, point;
-  RadiiOfCurvature<V> radii_i, radii_j;
 };
 
 /// Which lanes a search has to be asked for; the search itself, `found` for one lane.
 template <class Mask, class V, class Found>
 __attribute__((noinline)) void ask_search(Mask left, ContactsOf<V>& c, const Found& found) {
   constexpr int lanes = sizeof(V) / sizeof(double);
-  V* columns[11] = {&c.overlap,
-                    &c.n.x,
-                    &c.n.y,
-                    &c.n.z,
-                    &c.point.x,
-                    &c.point.y,
-                    &c.point.z,
-                    &c.radii_i.sum,
-                    &c.radii_i.product,
-                    &c.radii_j.sum,
-                    &c.radii_j.product};
-  double values[11][lanes];
+  V* columns[7] = {&c.overlap, &c.n.x, &c.n.y, &c.n.z, &c.point.x, &c.point.y, &c.point.z};
+  double values[7][lanes];
   std::int64_t held[lanes];
   if constexpr (lanes == 1) {
     held[0] = left;
   } else {
     std::memcpy(held, &left, sizeof(left));
   }
-  for (int k = 0; k < 11; ++k) std::memcpy(values[k], columns[k], sizeof(V));
+  for (int k = 0; k < 7; ++k) std::memcpy(values[k], columns[k], sizeof(V));
   for (int lane = 0; lane < lanes; ++lane) {
     if (held[lane] == 0) continue;
     const ContactsOf<double> one = found(lane);
-    const double all[11] = {one.overlap,
-                            one.n.x,
-                            one.n.y,
-                            one.n.z,
-                            one.point.x,
-                            one.point.y,
-                            one.point.z,
-                            one.radii_i.sum,
-                            one.radii_i.product,
-                            one.radii_j.sum,
-                            one.radii_j.product};
-    for (int k = 0; k < 11; ++k) values[k][lane] = all[k];
+    const double all[7] = {one.overlap, one.n.x, one.n.y, one.n.z, one.point.x, one.point.y, one.point.z};
+    for (int k = 0; k < 7; ++k) values[k][lane] = all[k];
   }
-  for (int k = 0; k < 11; ++k) std::memcpy(columns[k], values[k], sizeof(V));
+  for (int k = 0; k < 7; ++k) std::memcpy(columns[k], values[k], sizeof(V));
 }
 
 template <class V>
@@ -78,146 +57,224 @@ inline SuperellipsoidAxes<double> in_lane(const SuperellipsoidAxes<V>& a, int la
   return {in_lane(a.x, lane), in_lane(a.y, lane), in_lane(a.z, lane)};
 }
 
+/// f of a pair along a direction and Newton's step from there.
+template <class V>
+struct OverlapAndStep {
+  OverlapAt<V> at;
+  PlainStep<V> step;
+
+  V overlap() const { return at.overlap; }
+  V heights() const { return at.i.height + at.j.height; }
+  const Triple<V>& n() const { return at.n; }
+  const Triple<V>& turn() const { return step.plain; }
+  V reach() const { return step.reach; }
+  Triple<V> next() const { return turned_by(at.n, step.plain); }
+};
+template <class V>
+inline __attribute__((always_inline)) V rolling_of(const SuperellipsoidPair<V>& pair) {
+  return pair.form_i.rolling + pair.form_j.rolling;
+}
+/// Of a direction, by rounding.
+template <class V>
+inline __attribute__((always_inline)) V noise_of(const SuperellipsoidPair<V>& pair) {
+  return 8e-15 + 2e-15 * (size_of(pair) / rolling_of(pair));
+}
+template <class V>
+inline __attribute__((always_inline)) OverlapAndStep<V> evaluated(const SuperellipsoidPair<V>& pair,
+                                                                  const Triple<V>& n) {
+  OverlapAndStep<V> there = {overlap_at(pair, n), {}};
+  there.step = plain_step(there.at, modes_of(there.at), rolling_of(pair));
+  return there;
+}
+/// The direction after n where Newton's step would lead astray. Seldom, and so not inlined.
+template <class V>
+__attribute__((noinline)) Triple<V> far_direction(const SuperellipsoidPair<V>& pair, const Triple<V>& n) {
+  return turned_by(n, next_step(overlap_at(pair, n), rolling_of(pair)).turn);
+}
+
 /// What a contact is from where Newton's step leads to it.
 template <class V>
 inline __attribute__((always_inline)) ContactsOf<V> contacts_by(const SuperellipsoidPair<V>& pair,
-                                                                const OverlapAt<V>& at, const PlainStep<V>& step) {
-  ContactsOf<V> contacts;
-  contacts.overlap = at.overlap - 0.5 * step.gain;
-  contacts.n = turned_by(at.n, step.plain);
+                                                                const OverlapAndStep<V>& there) {
+  const OverlapAt<V>& at = there.at;
   Triple<V> both = plus(plus(at.i.point, V{} + 1.0, at.j.point), V{} + 1.0, pair.branch);
   const SupportMode<V>* modes[4] = {&at.i.xy, &at.i.z, &at.j.xy, &at.j.z};
   for (int m = 0; m < 4; ++m) {
-    const V moves = modes[m]->stiffness * step.s[m];
+    const V moves = modes[m]->stiffness * there.step.s[m];
     both = plus(both, m < 2 ? moves : -moves, modes[m]->along);
   }
-  contacts.point = times(V{} + 0.5, both);
-  contacts.radii_i = radii_of_curvature(at.i);
-  contacts.radii_j = radii_of_curvature(at.j);
-  return contacts;
+  return {at.overlap - 0.5 * there.step.gain, turned_by(at.n, there.step.plain), times(V{} + 0.5, both)};
 }
 
-/// The last step is taken from a direction on a grid, so that it has the same bits wherever the steps before came from:
-/// they lead to the least within 1e-12, and a direction that near the border of two places of the grid is left to the
-/// search, which starts from the bodies alone.
-constexpr double grid_places = 67108864, near_border = 1e-3, last_turn = 1e-4, turn_before = 1e-6;
+/// The last step is taken from a place of a grid of directions, that in which f is least, so that it has the same bits
+/// wherever the steps before came from. Places are as wide as the last step may be long, so that a contact that moves
+/// little stays in one, and the place kept from the last time is all that has to be looked at.
+///
+/// A place is a cube of the edge s about p; a direction is in the place to which it rounds. Beside flat sides s follows
+/// the least component u of n along the axes of both bodies: a step goes by its law while it is short beside u. Where u
+/// is below `flat_component` n has no place.
+constexpr double widest_place = 0x1p-15, place_over_component = 0x1p-13, least_component = 0x1p-27,
+                 flat_component = 0x1p-31;
+/// |turn|^2 and reach of a step of which the error is known: what it misses, beside other modes too.
+constexpr double known_turn = 2.5e-9, known_reach = 0.01;
 
 template <class V>
-struct OnGrid {
-  Triple<V> n;
-  V farthest;  ///< from the middle of its place, parts of it: 1/2 is the border
-};
+inline __attribute__((always_inline)) V most_of(const Triple<V>& v) {
+  return larger_of(magnitude_of(v.x), larger_of(magnitude_of(v.y), magnitude_of(v.z)));
+}
+/// The multiples of s nearest to n.
 template <class V>
-inline __attribute__((always_inline)) OnGrid<V> on_grid(const Triple<V>& n) {
-  constexpr double magic = 6755399441055744.0;
-  const auto nearest = [&](V v) { return (v * grid_places + magic) - magic; };
-  const Triple<V> place = {nearest(n.x), nearest(n.y), nearest(n.z)};
-  const auto off = [&](V v, V at) { return magnitude_of(v * grid_places - at); };
-  return {of_length_1(place), larger_of(off(n.x, place.x), larger_of(off(n.y, place.y), off(n.z, place.z)))};
+inline __attribute__((always_inline)) Triple<V> rounded_to(const Triple<V>& n, V s) {
+  const V magic = 6755399441055744.0 * s;
+  return {(n.x + magic) - magic, (n.y + magic) - magic, (n.z + magic) - magic};
 }
 
-/// Steps from a direction on: where they lead, whether they are done, by nothing but rounding too, and whether the pair
-/// was seen to be apart.
 template <class V, class Mask>
-struct Led {
-  Triple<V> n;
-  Mask done, settled, apart;
+struct GridPlace {
+  Triple<V> at;
+  Mask sure, flat;  ///< beyond the error of the step that led there
 };
+/// Of n, to which a step led.
 template <class V>
-inline __attribute__((always_inline)) auto led_from(const SuperellipsoidPair<V>& pair, const Triple<V>& start) {
-  const V rolling = pair.form_i.rolling + pair.form_j.rolling;
-  const V size = size_of(pair);
-  auto apart = rolling < 0.0;
-  Led<V, decltype(apart)> led = {start, apart, apart, apart};
-  for (int k = 0; k < superellipsoid_steps && any_of(!led.done); ++k) {
-    const OverlapAt<V> at = overlap_at(pair, led.n);
-    const OverlapStep<V> step = next_step(at, rolling);
-    const auto open = !led.done;
-    led.apart = led.apart | (open & (at.overlap < -1e-12 * (at.i.height + at.j.height)));
-    led.settled = led.settled | (open & (step.gain <= 1e-15 * size) & (dot(step.turn, step.turn) <= 1e-30));
-    led.n = chosen(led.done | led.settled, led.n, turned_by(led.n, step.turn));
-    led.done = led.done | led.apart | led.settled | is_near_least(step, turn_before);
-  }
-  return led;
+inline __attribute__((always_inline)) auto place_of(const SuperellipsoidPair<V>& pair, const Triple<V>& n,
+                                                    const OverlapAndStep<V>& there) {
+  using Bits = typename BitsOf<V>::Type;
+  const auto smaller = [](V p, V q) { return p < q ? p : q; };
+  const auto least_of = [&](const Triple<V>& v) {
+    return smaller(magnitude_of(v.x), smaller(magnitude_of(v.y), magnitude_of(v.z)));
+  };
+  const V turn = most_of(there.turn()), error = turn * (16.0 * there.reach() + 90.0 * turn) + noise_of(pair);
+  const V u = smaller(least_of(in_frame(pair.axes_i, n)), least_of(in_frame(pair.axes_j, n)));
+  const auto power_of_2 = [&](V v) {
+    constexpr std::uint64_t exponent = 0x7ff0000000000000;
+    const V within = smaller(larger_of(v, V{} + least_component), V{} + widest_place / place_over_component);
+    return same_bits<V>(same_bits<Bits>(within) & exponent);
+  };
+  const V low = power_of_2(u - error), high = power_of_2(u + error);
+  const V s = place_over_component * low;
+  GridPlace<V, decltype(u < low)> place = {rounded_to(n, s), u < low, u + error < flat_component};
+  place.sure =
+      (most_of(plus(n, V{} - 1.0, place.at)) + error < 0.5 * s) & (low == high) & (u - error >= flat_component);
+  return place;
 }
 
-/// Contacts by the grid, and where they are final.
-template <class V, class Mask>
-struct ByGrid {
-  ContactsOf<V> contacts;
-  Mask final;
-  V farthest;
+/// What is seen from a direction: whether f is least in its place; whether it shows that the pair is apart; else
+/// whether to go on.
+template <class At, class Mask>
+struct Look {
+  At at;
+  Mask final, apart, going;
 };
-template <class V>
-inline __attribute__((always_inline)) auto by_grid(const SuperellipsoidPair<V>& pair, const Triple<V>& n) {
-  const V rolling = pair.form_i.rolling + pair.form_j.rolling;
-  const OnGrid<V> grid = on_grid(n);
-  const OverlapAt<V> at = overlap_at(pair, grid.n);
-  const PlainStep<V> step = plain_step(at, modes_of(at), rolling);
-  ByGrid<V, decltype(at.overlap <= rolling)> result;
-  result.contacts = contacts_by(pair, at, step);
-  result.final = is_near_least(step, last_turn) & (at.overlap <= rolling);
-  result.farthest = grid.farthest;
-  return result;
+/// From `place`, which goes on where the look is not the last. `decided`: the look before was sure of it.
+template <class Pair, class V, class Mask>
+inline __attribute__((always_inline)) auto look_from(const Pair& pair, Triple<V>& place, Mask& decided) {
+  const V rolling = rolling_of(pair);
+  Look<decltype(evaluated(pair, place)), Mask> look;
+  look.at = evaluated(pair, of_length_1(place));
+  const auto& at = look.at;
+  look.apart = (at.overlap() < -1e-12 * at.heights()) | (rolling < 1e-25);  // pairs that pad a chunk have no size
+  const Mask near = (at.reach() <= known_reach) & (dot(at.turn(), at.turn()) <= known_turn);
+  Triple<V> next = at.next();
+  const auto found = place_of(pair, next, at);
+  const Mask stays = (found.at.x == place.x) & (found.at.y == place.y) & (found.at.z == place.z);
+  look.final = near & (at.overlap() <= 0.5 * rolling) & (decided | (found.sure & stays));
+  const Mask open = !(look.final | look.apart), sure = near & found.sure;
+  const Mask far = open & (!((at.reach() <= 0.5) & (dot(at.turn(), at.turn()) <= 0.01)));
+  look.going = open & !(near & found.flat);
+  if (!any_of(look.going)) return look;
+  if (any_of(far)) next = chosen(!far, next, far_direction(pair, at.n()));
+  place = chosen(look.going, chosen(sure, found.at, next), place);
+  decided = (look.going & sure) | (decided & (!look.going));
+  return look;
+}
+
+/// Looks from a direction on, until no lane goes on.
+template <class Pair, class V>
+inline __attribute__((always_inline)) auto led_from(const Pair& pair, Triple<V>& place, int steps) {
+  decltype(V{} < 0.0) decided = V{} < 0.0;
+  auto look = look_from(pair, place, decided);
+  for (int k = 0; k < steps && any_of(look.going); ++k) look = look_from(pair, place, decided);
+  return look;
 }
 
 template <class Mask, class V>
 inline __attribute__((always_inline)) ContactsOf<V> chosen(Mask held, const ContactsOf<V>& a, const ContactsOf<V>& b) {
-  return {held ? a.overlap : b.overlap,
-          chosen(held, a.n, b.n),
-          chosen(held, a.point, b.point),
-          {held ? a.radii_i.sum : b.radii_i.sum, held ? a.radii_i.product : b.radii_i.product},
-          {held ? a.radii_j.sum : b.radii_j.sum, held ? a.radii_j.product : b.radii_j.product}};
+  return {held ? a.overlap : b.overlap, chosen(held, a.n, b.n), chosen(held, a.point, b.point)};
 }
 
-/// From the bodies alone: by the grid where that serves, else by the direction to which the steps lead, or by the
-/// search.
+/// What the search finds of one pair, by its place where it has one.
+inline ContactsOf<double> searched_contact(const OverlapPair& pair) {
+  const SuperellipsoidContact found = contact_of(pair);
+  Triple<double> place = found.n;
+  const auto last = led_from(pair, place, 3);
+  if (last.final) return contacts_by(pair, last.at);
+  return {found.overlap, found.n, found.point};
+}
+
+/// From the bodies alone: by the place where f is least if there is one, else by the direction to which the steps lead,
+/// or by the search. `next`: where to begin next time.
 template <class V>
-__attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, ContactsOf<V>& contacts) {
-  const V rolling = pair.form_i.rolling + pair.form_j.rolling;
-  const auto led = led_from(pair, first_direction(pair));
-  const auto grid = by_grid(pair, led.n);
-  const OverlapAt<V> at = overlap_at(pair, led.n);
-  const PlainStep<V> step = plain_step(at, modes_of(at), rolling);
-  const auto least = (led.settled | (led.done & is_near_least(step, last_turn))) & (at.overlap <= rolling);
-  contacts = chosen(led.done & grid.final, grid.contacts, contacts_by(pair, at, step));
+__attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, ContactsOf<V>& contacts,
+                                           Triple<V>& next) {
+  using Mask = decltype(V{} < 0.0);
+  const V rolling = rolling_of(pair), size = size_of(pair);
+  next = first_direction(pair);
+  const auto led = led_from(pair, next, superellipsoid_steps);
+  contacts = contacts_by(pair, led.at);
   contacts.overlap = led.apart ? V{} - rolling : contacts.overlap;
-  const auto left = !(led.apart | least | (led.done & grid.final));
+  Mask left = !(led.apart | led.final);
+  if (!any_of(left)) return;
+  // Flat on flat, or deep, or astray.
+  OverlapAt<V> at = led.at.at;
+  OverlapStep<V> step = next_step(at, rolling);
+  Mask settled = is_near_least(step, 1e-6) | is_least(at, step, size), going = left & !settled;
+  for (int k = 0; k < superellipsoid_steps && any_of(going); ++k) {
+    at = overlap_at(pair, chosen(settled, at.n, turned_by(at.n, step.turn)));
+    step = next_step(at, rolling);
+    settled = settled | is_near_least(step, 1e-6) | is_least(at, step, size);
+    going = left & !settled;
+  }
+  Triple<V> place = at.n;
+  const auto last = led_from(pair, place, 3);
+  const ContactsOf<V> by_steps = contacts_by(pair, OverlapAndStep<V>{at, step});
+  contacts = chosen(left, chosen(last.final, contacts_by(pair, last.at), by_steps), contacts);
+  next = chosen(left, chosen(last.final, place, at.n), next);
+  left = left & !(settled & (at.overlap <= rolling));
   if (!any_of(left)) return;
   ask_search(left, contacts, [&](int lane) {
-    const OverlapPair one = {in_lane(pair.form_i, lane), in_lane(pair.form_j, lane), in_lane(pair.axes_i, lane),
-                             in_lane(pair.axes_j, lane), in_lane(pair.branch, lane)};
-    const SuperellipsoidContact found = contact_of(one);
-    const auto last = by_grid(one, found.n);
-    if (last.final) return last.contacts;
-    return ContactsOf<double>{found.overlap, found.n, found.point, radii_of_curvature(found.at.i),
-                              radii_of_curvature(found.at.j)};
+    return searched_contact({in_lane(pair.form_i, lane), in_lane(pair.form_j, lane), in_lane(pair.axes_i, lane),
+                             in_lane(pair.axes_j, lane), in_lane(pair.branch, lane)});
   });
+  next = chosen(left, contacts.n, next);
 }
 
-/// `guess`: a direction to begin with, of length 1, or shorter than 1/2 where there is none; afterwards the next one.
-/// The contacts do not depend on it.
+/// Steps that a kept direction is given before the pair is left to those from the bodies.
+constexpr int steps_from_guess = 4;
+
+/// `guess`: a direction to begin with, longer than 1/2, or 0 where there is none; afterwards the next one. The contacts
+/// do not depend on it.
 template <class V>
 inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const SuperellipsoidPair<V>& pair, Triple<V>& guess) {
-  const auto guessed = dot(guess, guess) >= 0.25;
+  using Mask = decltype(V{} < 0.0);
+  const Mask guessed = dot(guess, guess) >= 0.25;
   const V zero = V{}, one = zero + 1.0;
   if (!any_of(guessed)) {
     ContactsOf<V> contacts;
-    from_bodies(pair, contacts);
-    guess = contacts.n;
+    from_bodies(pair, contacts, guess);
     return contacts;
   }
-  const auto led = led_from(pair, chosen(guessed, guess, Triple<V>{one, zero, zero}));
-  const auto grid = by_grid(pair, led.n);
-  ContactsOf<V> contacts = grid.contacts;
+  guess = chosen(guessed, guess, Triple<V>{one, zero, zero});
+  const auto led = led_from(pair, guess, steps_from_guess);
+  ContactsOf<V> contacts = contacts_by(pair, led.at);
   contacts.overlap = led.apart ? zero - one : contacts.overlap;
-  const auto left = !(led.apart | (guessed & led.done & (grid.farthest < 0.5 - near_border) & grid.final));
+  const Mask left = !(led.apart | (guessed & led.final));
   if (any_of(left)) {
     ContactsOf<V> others;
-    from_bodies(pair, others);
+    Triple<V> next;
+    from_bodies(pair, others, next);
     contacts = chosen(left, others, contacts);
+    guess = chosen(left, next, guess);
   }
-  guess = chosen(led.apart, led.n, contacts.n);
   return contacts;
 }
 

@@ -49,6 +49,14 @@ inline __attribute__((always_inline)) OverlapAt<V> overlap_at(const Superellipso
   return at;
 }
 
+/// Two vectors of length 1 across n.
+template <class V>
+inline __attribute__((always_inline)) void across(const Triple<V>& n, Triple<V>& first, Triple<V>& second) {
+  const V one = V{} + 1.0, sign = (n.z < 0.0) ? -one : one, a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+  first = {1.0 + sign * (n.x * n.x * a), sign * b, -(sign * n.x)};
+  second = {b, sign + n.y * n.y * a, -n.y};
+}
+
 /// Four modes, U seen as two components in a frame across n whose first axis is the U of the stiffest.
 template <class V>
 struct Modes {
@@ -119,27 +127,53 @@ inline __attribute__((always_inline)) Across<V> solved(const ModeFrame<V>& f, V 
 }
 
 /// Newton's step from a direction; what f falls by it, twice over, if f is a parabola; the farthest that a mode goes,
-/// as a part of where it is.
+/// as a part of where it is, and its direction.
 template <class V>
 struct PlainStep {
   Triple<V> plain;  ///< the turn, across n
   V s[4];           ///< U.plain
-  V gain, farthest, shift;
+  V gain, farthest, reach, shift;
 };
+/// y of (sum k U U - s) y = F in two components across n: y det = sum k (V.F) V - s F, V the U a right angle further,
+/// det = sum k_m k_l A_ml^2 - s (sum k U.U - s), A_ml = U_m.V_l. So a mode without bound beside others loses none of
+/// them, nor its own s_m = U_m.y = (sum k_l A_ml (V_l.F) - s U_m.F)/det.
 template <class V>
 inline __attribute__((always_inline)) PlainStep<V> plain_step(const OverlapAt<V>& at, const Modes<V>& modes,
                                                               V rolling) {
   PlainStep<V> step;
   const V most = 0.9 * rolling;  // C is not below the rolling radii
   step.shift = (at.overlap < most) ? at.overlap : most;
-  const ModeFrame<V> frame = frame_of(modes.k, modes.along, at.n, step.shift);
-  const Across<V> y = solved(frame, dot(at.downhill, frame.first), dot(at.downhill, frame.second));
-  step.plain = plus(times(y.first, frame.first), y.second, frame.second);
-  step.gain = dot(step.plain, at.downhill);
-  step.farthest = V{};
+  Triple<V> first, second;
+  across(at.n, first, second);
+  const V F1 = dot(at.downhill, first), F2 = dot(at.downhill, second), sF1 = step.shift * F1, sF2 = step.shift * F2;
+  V u1[4], u2[4], force[4], trace = -step.shift, det = V{}, y1 = -sF1, y2 = -sF2;
   for (int m = 0; m < 4; ++m) {
-    step.s[m] = frame.u1[m] * y.first + frame.u2[m] * y.second;
-    step.farthest = larger_of(step.farthest, magnitude_of((modes.growth[m] * modes.share[m]) * step.s[m]));
+    u1[m] = dot(modes.along[m], first);
+    u2[m] = dot(modes.along[m], second);
+    force[m] = modes.k[m] * (u1[m] * F2 - u2[m] * F1);
+    trace = trace + modes.k[m] * (u1[m] * u1[m] + u2[m] * u2[m]);
+    y1 = y1 - force[m] * u2[m];
+    y2 = y2 + force[m] * u1[m];
+    step.s[m] = -(sF1 * u1[m] + sF2 * u2[m]);
+  }
+  for (int m = 0; m < 4; ++m) {
+    for (int l = m + 1; l < 4; ++l) {
+      const V area = u2[m] * u1[l] - u1[m] * u2[l];
+      det = det + (modes.k[m] * area) * (modes.k[l] * area);
+      step.s[m] = step.s[m] + area * force[l];
+      step.s[l] = step.s[l] - area * force[m];
+    }
+  }
+  det = det - step.shift * trace;
+  const V inverse = 1.0 / ((det > 0.0) ? det : V{} + 1.0);
+  step.plain = plus(times(inverse * y1, first), inverse * y2, second);
+  step.gain = inverse * (y1 * F1 + y2 * F2);
+  step.farthest = step.reach = V{};
+  for (int m = 0; m < 4; ++m) {
+    step.s[m] = inverse * step.s[m];
+    const V reach = magnitude_of(modes.growth[m] * step.s[m]);
+    step.reach = larger_of(step.reach, reach);
+    step.farthest = larger_of(step.farthest, modes.share[m] * reach);
   }
   return step;
 }

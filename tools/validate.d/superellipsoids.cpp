@@ -137,11 +137,7 @@ int cost(const std::string& way, long count, double exponent) {
       const EllipsoidPair<double> pair = {ellipsoid_matrix(known.pair.form_i.half, known.pair.axes_i),
                                           ellipsoid_matrix(known.pair.form_j.half, known.pair.axes_j),
                                           known.pair.branch};
-      sum += contacts_of(pair, [&](int) {
-               ContactsOf<double> searched;
-               from_bodies(known.pair, searched);
-               return searched;
-             }).overlap;
+      sum += contacts_of(pair, guess, [&](int) { return searched_contact(known.pair); }).overlap;
     }
   }
   std::printf("%s: %ld pairs of exponent %g; %.3g; evaluations a pair by halving %.1f\n", way.c_str(), count, exponent,

@@ -84,18 +84,14 @@ SolidPlace Outline<Shape::superellipsoid>::place(const Branch& b, const double* 
     const double gap = shown_gap_of_ellipsoids(pair);
     if (gap > 0) return solid_place(b, -gap, of_length_1(pair.branch), {0, 0, 0});
   }
+  Triple<double> guess = {0, 0, 0};
   if (!ellipsoids) {
-    Triple<double> guess = {0, 0, 0};
     const ContactsOf<double> at = contacts_of(pair, guess);
     return solid_place(b, at.overlap, at.n, at.point);
   }
   const EllipsoidPair<double> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
                                       ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
-  const ContactsOf<double> at = contacts_of(both, [&](int) {
-    const SuperellipsoidContact found = contact_of(pair);
-    return ContactsOf<double>{found.overlap, found.n, found.point, radii_of_curvature(found.at.i),
-                              radii_of_curvature(found.at.j)};
-  });
+  const ContactsOf<double> at = contacts_of(both, guess, [&](int) { return searched_contact(pair); });
   return solid_place(b, at.overlap, at.n, at.point);
 }
 

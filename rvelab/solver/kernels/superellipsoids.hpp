@@ -71,7 +71,6 @@ inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> s
 struct SuperellipsoidScratch : SpaceScratch {
   ScratchColumn overlap;
   TripleColumn branch, arm_i, arm_j;
-  ScratchColumn matrix_i[7], matrix_j[7];  ///< ellipsoids
 };
 
 template <int W, class V>
@@ -85,90 +84,165 @@ inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch,
   s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
 }
 
-/// Contacts of W pairs. A guess is kept beside each pair (PairArrays::solid); the contact does not depend on it.
+/// Any W pairs of a chunk, by their numbers in it.
 template <int W>
-inline __attribute__((always_inline)) ContactsOf<typename Lanes<W>::V> contacts_from_guess(
-    const SuperellipsoidPair<typename Lanes<W>::V>& pair, double* solid) {
-  using V = typename Lanes<W>::V;
-  V guess[4];
-  columns_of<W>(solid, 8, guess);
-  Triple<V> direction = {guess[0], guess[1], guess[2]};
-  const ContactsOf<V> contacts = contacts_of(pair, direction);
-  const V next[4] = {direction.x, direction.y, direction.z, V{}};
-  rows_of<W>(next, solid, 8);
-  return contacts;
-}
+struct PairGroup {
+  long k[W];
+  std::int32_t i[W], j[W];
 
-/// Branch, normal, overlap and arms. Not inlined: it is long, and the same for every law.
-template <int W>
-__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                     long first, long count, SuperellipsoidScratch& s) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-    s.branch.store(k, pair.branch);
-    put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, p.solid + 8 * (first + k)), k, s);
+  template <class At>
+  static PairGroup of(const PairArrays& p, long first, const At& at) {
+    PairGroup group;
+    for (int lane = 0; lane < W; ++lane) {
+      group.k[lane] = at(lane);
+      group.i[lane] = p.row_i[first + group.k[lane]];
+      group.j[lane] = p.row_j[first + group.k[lane]];
+    }
+    return group;
   }
-}
-
-template <class V>
-inline __attribute__((always_inline)) void put_matrix(const EllipsoidMatrix<V>& m, long k, ScratchColumn* to) {
-  const V all[7] = {m.xx, m.yy, m.zz, m.yz, m.xz, m.xy, m.rolling};
-  for (int column = 0; column < 7; ++column) store_as(to[column].at + k, all[column]);
-}
-template <class V>
-inline __attribute__((always_inline)) EllipsoidMatrix<V> matrix_in(const ScratchColumn* from, long k) {
-  const auto at = [&](int column) { return load_as<V>(from[column].at + k); };
-  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
-}
-
-/// What a search finds for one lane of W pairs.
-template <int W>
-struct EllipsoidSearch {
-  const StepConstants& c;
-  const PairArrays& p;
-  const double* rows;
-  long at;
-  __attribute__((noinline)) ContactsOf<double> operator()(int lane) const {
-    const SuperellipsoidContact found = contact_of(superellipsoid_pair<1>(c, p, rows, at + lane));
-    return {found.overlap, found.n, found.point, radii_of_curvature(found.at.i), radii_of_curvature(found.at.j)};
+  template <class V>
+  Triple<V> column(const TripleColumn& from) const {
+    using L = Lanes<W>;
+    return {L::collected([&](int lane) { return from.x.at[k[lane]]; }),
+            L::collected([&](int lane) { return from.y.at[k[lane]]; }),
+            L::collected([&](int lane) { return from.z.at[k[lane]]; })};
+  }
+  template <class V>
+  void put(const Triple<V>& value, TripleColumn& to) const {
+    for (int lane = 0; lane < W; ++lane) {
+      to.x.at[k[lane]] = in_lane(value.x, lane);
+      to.y.at[k[lane]] = in_lane(value.y, lane);
+      to.z.at[k[lane]] = in_lane(value.z, lane);
+    }
   }
 };
 
-/// The same of ellipsoids, the pairs of a chunk side by side: roots and divisions of one block of lanes fill the time
-/// of another's.
-template <int W>
-__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                long first, long count, SuperellipsoidScratch& s) {
-  using V = typename Lanes<W>::V;
-  long blocks[chunk_pairs / W], open = 0;
-  for (long k = 0; k < count; k += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-    const EllipsoidPair<V> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
-                                   ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
-    s.branch.store(k, pair.branch);
-    put_matrix(both.i, k, s.matrix_i);
-    put_matrix(both.j, k, s.matrix_j);
-    s.normal.store(k, first_direction(both));
-    blocks[open++] = k;
-  }
-  for (int evaluation = 0; open > 0; ++evaluation) {
-    const long all = open;
-    open = 0;
-    for (long block = 0; block < all; ++block) {
-      const long k = blocks[block];
-      const EllipsoidPair<V> pair = {matrix_in<V>(s.matrix_i, k), matrix_in<V>(s.matrix_j, k),
-                                     s.branch.template load<V>(k)};
-      const Triple<V> n = s.normal.template load<V>(k);
-      const EllipsoidStep<V> step = ellipsoid_step(pair, n);
-      if (evaluation < superellipsoid_steps && any_of(!is_done(step))) {
-        s.normal.store(k, chosen(is_done(step), n, turned_by(n, step.turn)));
-        blocks[open++] = k;
-      } else {
-        put_contacts<W>(pair.branch, contacts_by(pair, n, step, EllipsoidSearch<W>{c, p, rows, first + k}), k, s);
-      }
+template <class V>
+inline __attribute__((always_inline)) EllipsoidPair<V> ellipsoids_of(const SuperellipsoidPair<V>& pair) {
+  return {ellipsoid_matrix(pair.form_i.half, pair.axes_i), ellipsoid_matrix(pair.form_j.half, pair.axes_j),
+          pair.branch};
+}
+template <class Pair, class Look>
+inline __attribute__((always_inline)) auto contacts_seen(const Pair& pair, const Look& look) {
+  auto contacts = contacts_by(pair, look.at);
+  contacts.overlap = look.apart ? contacts.overlap * 0.0 - 1.0 : contacts.overlap;
+  return contacts;
+}
+
+/// Numbers of pairs, from the lanes of a mask.
+struct PairNumbers {
+  long at[chunk_pairs], count = 0;
+
+  template <int W, class Mask, class Number>
+  inline __attribute__((always_inline)) void add(Mask held, const Number& number) {
+    if (!any_of(held)) return;
+    if constexpr (W == 1) {
+      at[count++] = number(0);
+    } else {
+      std::int64_t lanes[W];
+      std::memcpy(lanes, &held, sizeof(held));
+      for (int lane = 0; lane < W; ++lane)
+        if (lanes[lane] != 0) at[count++] = number(lane);
     }
   }
+};
+
+/// Branch, normal, overlap and arms, block by block. Not inlined: it is long, and the same for every law.
+template <int W>
+__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    s.branch.store(k, pair.branch);
+    V row[4];
+    columns_of<W>(solid + 8 * k, 8, row);
+    Triple<V> guess = {row[0], row[1], row[2]};
+    put_contacts<W>(pair.branch, contacts_of(pair, guess), k, s);
+    const V next[4] = {guess.x, guess.y, guess.z, V{}};
+    rows_of<W>(next, solid + 8 * k, 8);
+  }
+}
+
+/// The same of ellipsoids. Each pair is looked at from its kept direction, and goes on in groups with others
+/// until it is done: one that is in its place costs one look, whatever those beside it do. The kept directions stand in
+/// rows of eight at `solid`. Not inlined: it is long, and the same for every law.
+template <int W>
+__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                long first, long count, double* solid, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  using Mask = decltype(V{} < 0.0);
+  PairNumbers open, left;
+  double decided[chunk_pairs];
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    s.branch.store(k, pair.branch);
+    V row[4];
+    columns_of<W>(solid + 8 * k, 8, row);
+    Triple<V> place = {row[0], row[1], row[2]};
+    const Mask none = dot(place, place) < 0.25;
+    if (any_of(none)) place = chosen(none, Triple<V>{V{} + 1.0, V{}, V{}}, place);
+    Mask sure = V{} < 0.0;
+    const auto both = ellipsoids_of(pair);
+    const auto look = look_from(both, place, sure);
+    put_contacts<W>(pair.branch, contacts_seen(both, look), k, s);
+    const V next[4] = {place.x, place.y, place.z, V{}};
+    rows_of<W>(next, solid + 8 * k, 8);
+    store_as(decided + k, sure ? V{} + 1.0 : V{});
+    const Mask going = look.going & (!none), lost = (look.going & none) | (!(look.final | look.apart | look.going));
+    open.template add<W>(going, [=](int lane) { return k + lane; });
+    left.template add<W>(lost, [=](int lane) { return k + lane; });
+  }
+  if (open.count + left.count == 0) return;
+  const auto in_groups = [&](const PairNumbers& numbers, const auto& work) {
+    for (long from = 0; from < numbers.count; from += W) {
+      const auto at = [&](int lane) { return from + lane < numbers.count ? from + lane : from; };
+      const auto group = PairGroup<W>::of(p, first, [&](int lane) { return numbers.at[at(lane)]; });
+      const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, group.i),
+                                     of_j = columns_of_shapes<W>(rows, group.j);
+      const Triple<V> branch = group.template column<V>(s.branch);
+      const SuperellipsoidPair<V> pair = {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch};
+      V row[4];
+      ColumnsOf<W>::load([&](int lane) { return solid + 8 * group.k[lane]; }, row);
+      Triple<V> place = {row[0], row[1], row[2]};
+      const ContactsOf<V> contacts = work(group, pair, place, from);
+      for (int lane = 0; lane < W; ++lane) {
+        double* kept = solid + 8 * group.k[lane];
+        kept[0] = in_lane(place.x, lane), kept[1] = in_lane(place.y, lane), kept[2] = in_lane(place.z, lane);
+        s.overlap.at[group.k[lane]] = in_lane(contacts.overlap, lane);
+      }
+      const Mask touch = contacts.overlap > 0.0;
+      const Triple<V> zero = {V{}, V{}, V{}};
+      group.put(contacts.n, s.normal);
+      group.put(chosen(touch, contacts.point, zero), s.arm_i);
+      group.put(chosen(touch, plus(contacts.point, V{} - 1.0, branch), zero), s.arm_j);
+    }
+  };
+  for (int k = 0; k < steps_from_guess && open.count > 0; ++k) {
+    const PairNumbers now = open;
+    open.count = 0;
+    in_groups(now, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long from) {
+      Mask sure = Lanes<W>::collected([&](int lane) { return decided[group.k[lane]]; }) > 0.5;
+      const auto both = ellipsoids_of(pair);
+      const auto look = look_from(both, place, sure);
+      const V held = sure ? V{} + 1.0 : V{};
+      for (int lane = 0; lane < W; ++lane) decided[group.k[lane]] = in_lane(held, lane);
+      const long here = now.count - from;
+      const V number = Lanes<W>::collected([](int lane) { return double(lane); });
+      const Mask counts = number < double(here), going = look.going & counts,
+                 lost = (!(look.final | look.apart | look.going)) & counts;
+      open.template add<W>(going, [&](int lane) { return group.k[lane]; });
+      left.template add<W>(lost, [&](int lane) { return group.k[lane]; });
+      return contacts_seen(both, look);
+    });
+  }
+  for (long k = 0; k < open.count; ++k) left.at[left.count++] = open.at[k];
+  in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long) {
+    ContactsOf<V> contacts;
+    from_bodies(ellipsoids_of(pair), contacts, place,
+                [&](int lane) { return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane])); });
+    return contacts;
+  });
 }
 
 /// What PlaceKernel asks for: n, overlap, contact point from the centre of i.
@@ -180,15 +254,11 @@ void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, con
   double guesses[8 * chunk_pairs];  // not kept: threads may look at one pair together
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    if constexpr (Ellipsoids) {
-      ellipsoid_places<W>(c, p, rows, first, count, s);
-    } else {
-      for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
-      for (long k = 0; k < count; k += W) {
-        const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-        put_contacts<W>(pair.branch, contacts_from_guess<W>(pair, guesses + 8 * k), k, s);
-      }
-    }
+    for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
+    if constexpr (Ellipsoids)
+      ellipsoid_places<W>(c, p, rows, first, count, guesses, s);
+    else
+      superellipsoid_places<W>(c, p, rows, first, count, guesses, s);
     for (long k = 0; k < count; k += W) {
       const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
       const V near[4] = {n.x, n.y, n.z, load_as<V>(s.overlap.at + k)}, far[4] = {point.x, point.y, point.z, V{}};
@@ -208,9 +278,9 @@ struct SuperellipsoidPairs {
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
     if constexpr (Ellipsoids)
-      ellipsoid_places<T::W>(c, p, rows, first, count, s);
+      ellipsoid_places<T::W>(c, p, rows, first, count, p.solid + 8 * first, s);
     else
-      superellipsoid_places<T::W>(c, p, rows, first, count, s);
+      superellipsoid_places<T::W>(c, p, rows, first, count, p.solid + 8 * first, s);
   }
   template <class V>
   static inline __attribute__((always_inline)) V overlap(long k, const Scratch& s) {
