@@ -5,8 +5,6 @@
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/error.hpp"
-#include "rvelab/grains/clump.hpp"
 #include "rvelab/grains/filling.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/keys/regular_file.hpp"
@@ -35,14 +33,7 @@ void run_clump(const ClumpArguments& arguments) {
   const Mesh mesh = read_stl(keys::whole_file<std::string>(arguments.surface, "an STL file", std::uint64_t{1} << 30),
                              arguments.surface);
   const Filling filling = filled(mesh, arguments.members);
-  const std::string text = as_members(filling, arguments.surface);
-  try {
-    clump_of(arguments.output, read_members(text, arguments.output), 3);
-  } catch (const InputError& error) {
-    throw InputError(arguments.surface + ": with " + std::to_string(arguments.members) +
-                     " spheres some touch none of the others; give more by --members");
-  }
-  io::publish_text(arguments.output, text);
+  io::publish_text(arguments.output, as_members(filling, arguments.surface));
   Listing listing;
   listing.add("file", arguments.output);
   listing.add("triangles", mesh.triangles.size());
@@ -64,7 +55,7 @@ void add_clump(CLI::App& app) {
       ->required();
   command.add_option("-o,--output", arguments->output, "members to write: CSV with columns x, y, z, r")->required();
   command.add_option("--members", arguments->members, "spheres at most; more follow the surface more closely")
-      ->check(CLI::Range(1, 500))
+      ->check(CLI::Range(1, 200))
       ->capture_default_str();
   add_force(command, arguments->force);
   add_json(command, arguments->json);

@@ -3,8 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "rvelab/cell/cube_root.hpp"
 
@@ -14,8 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Points of the surface; those of medial balls and errors are the same. 2,000 and 8,000 state the same error of a
-/// cube, an ellipsoid and a screw within a tenth.
+/// Points of the surface, for medial balls and for what is told of distances.
 constexpr std::size_t point_count = 2000;
 /// Halvings of the distance that counts as near: to a thousandth of the radius.
 constexpr int halvings = 10;
@@ -67,30 +68,46 @@ Ball medial_ball(const std::vector<SurfacePoint>& points, std::size_t at, double
   }
 }
 
-/// Distances of the points to each ball; a row is a ball.
-std::vector<std::vector<double>> distances(const std::vector<SurfacePoint>& points, const std::vector<Ball>& balls) {
-  std::vector<std::vector<double>> all;
-  for (const Ball& ball : balls) {
-    std::vector<double>& row = all.emplace_back();
+/// Balls, and how far each point of the surface is from each, m; a row is a ball.
+struct Candidates {
+  std::vector<Ball> balls;
+  std::vector<std::vector<double>> distance;
+  bool overlap(std::size_t a, std::size_t b) const {
+    return (balls[a].at - balls[b].at).norm() < balls[a].radius + balls[b].radius;
+  }
+};
+Candidates candidates_of(const std::vector<SurfacePoint>& points, std::vector<Ball> balls) {
+  Candidates all{std::move(balls), {}};
+  for (const Ball& ball : all.balls) {
+    std::vector<double>& row = all.distance.emplace_back();
     for (const SurfacePoint& p : points) row.push_back(std::max(0.0, (p.at - ball.at).norm() - ball.radius));
   }
   return all;
 }
 
-/// Rows that are chosen until every point is near to one, or one more than `most`.
-std::vector<std::size_t> chosen(const std::vector<std::vector<double>>& distance, double near, std::size_t most) {
+using Points = std::bitset<point_count>;
+
+/// Rows that are chosen until every point is near to one, or one more than `most`. All but the first overlap one that
+/// was chosen before, so that they hang together.
+std::vector<std::size_t> chosen(const Candidates& candidates, double near, std::size_t most) {
+  const std::size_t count = candidates.balls.size();
+  std::vector<Points> covers(count);
+  for (std::size_t b = 0; b < count; ++b)
+    for (std::size_t k = 0; k < point_count; ++k) covers[b][k] = candidates.distance[b][k] <= near;
   std::vector<std::size_t> rows;
-  std::vector<bool> done(distance.front().size(), false);
-  while (rows.size() <= most) {
+  std::vector<bool> reached(count, true);
+  Points open;
+  open.set();
+  while (open.any() && rows.size() <= most) {
     std::size_t best = 0, best_gain = 0;
-    for (std::size_t b = 0; b < distance.size(); ++b) {
-      std::size_t gain = 0;
-      for (std::size_t k = 0; k < done.size(); ++k) gain += !done[k] && distance[b][k] <= near;
-      if (gain > best_gain) best = b, best_gain = gain;
-    }
-    if (best_gain == 0) break;
+    for (std::size_t b = 0; b < count; ++b)
+      if (const std::size_t gain = reached[b] ? (covers[b] & open).count() : 0; gain > best_gain)
+        best = b, best_gain = gain;
+    if (best_gain == 0) return std::vector<std::size_t>(most + 1);  // none within reach
+    open &= ~covers[best];
+    if (rows.empty()) std::fill(reached.begin(), reached.end(), false);
     rows.push_back(best);
-    for (std::size_t k = 0; k < done.size(); ++k) done[k] = done[k] || distance[best][k] <= near;
+    for (std::size_t b = 0; b < count; ++b) reached[b] = reached[b] || candidates.overlap(best, b);
   }
   return rows;
 }
@@ -116,12 +133,12 @@ Filling filled(const Mesh& mesh, int most) {
     ball.radius = distance_to(mesh, ball.at, ball.radius);  // points leave gaps: within the surface itself
     if (ball.radius > 1e-3 * radius) balls.push_back(ball);
   }
-  const auto distance = distances(points, balls);
+  const Candidates candidates = candidates_of(points, std::move(balls));
   double near = 0, enough = (high - low).norm();
-  std::vector<std::size_t> rows = chosen(distance, enough, std::size_t(most));
+  std::vector<std::size_t> rows = chosen(candidates, enough, std::size_t(most));
   for (int k = 0; k < halvings; ++k) {
     const double middle = k == 0 ? radius : (near + enough) / 2;
-    std::vector<std::size_t> found = chosen(distance, middle, std::size_t(most));
+    std::vector<std::size_t> found = chosen(candidates, middle, std::size_t(most));
     const bool fits = found.size() <= std::size_t(most);
     (fits ? enough : near) = middle;
     if (fits) rows = std::move(found);
@@ -129,11 +146,11 @@ Filling filled(const Mesh& mesh, int most) {
   Filling filling;
   for (std::size_t k = 0; k < points.size(); ++k) {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t b : rows) least = std::min(least, distance[b][k]);
+    for (const std::size_t b : rows) least = std::min(least, candidates.distance[b][k]);
     filling.mean_distance += least / radius / double(points.size());
     filling.largest_distance = std::max(filling.largest_distance, least / radius);
   }
-  for (const std::size_t b : rows) filling.spheres.push_back(balls[b]);
+  for (const std::size_t b : rows) filling.spheres.push_back(candidates.balls[b]);
   std::stable_sort(filling.spheres.begin(), filling.spheres.end(),
                    [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
   const MassProperties clump = union_of_spheres(filling.spheres);

@@ -18,8 +18,8 @@ struct Filling {
 
 /// With `most` spheres. Balls of the medial axis (the largest ones in the grain that touch its surface at a point:
 /// Ma, Bae and Choi 2012) are chosen one after the other, each the one to which most of the surface is near that is
-/// near to none yet (as Ferellec and McDowell 2010); near is the least distance for which `most` suffice. InputError
-/// where the spheres do not hang together: more are needed.
+/// near to none yet (as Ferellec and McDowell 2010); near is the least distance for which `most` suffice. Each overlaps
+/// one that was chosen before.
 Filling filled(const Mesh& mesh, int most);
 
 }  // namespace rvelab

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "rvelab/grains/clump.hpp"
 #include "rvelab/grains/filling.hpp"
 #include "tests/catch.hpp"
 #include "tests/refusal.hpp"
@@ -139,7 +140,7 @@ TEST_CASE("The distance to a surface is that to its faces, edges and corners", "
 }
 
 TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better the more there are", "[grains]") {
-  const Filling ball = filled(read_stl(as_text(ellipsoid(4, {1, 1, 1})), "ball.stl"), 1);
+  const Filling ball = filled(read_stl(as_text(ellipsoid(5, {1, 1, 1})), "ball.stl"), 1);
   REQUIRE(ball.spheres.size() == 1);
   CHECK(ball.spheres[0].radius == Approx(1).epsilon(5e-3));
   CHECK(ball.spheres[0].at.norm() < 5e-3);
@@ -157,7 +158,8 @@ TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better t
       CHECK(int(filling.spheres.size()) <= members);
       CHECK(filling.largest_distance < before);
       CHECK(filling.mean_distance < filling.largest_distance);
-      CHECK(filling.volume_ratio < 1 + 1e-9);  // none reaches out
+      CHECK(filling.volume_ratio < 1 + 1e-9);                 // none reaches out
+      CHECK_NOTHROW(clump_of("filled", filling.spheres, 3));  // they hang together
       if (mesh == &block) CHECK(out_of_box(filling, sides) < 1e-9);
       before = filling.largest_distance;
     }
