@@ -7,6 +7,7 @@
 
 #include "rvelab/measure/deviator.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/records/energy_quantities.hpp"
 #include "rvelab/records/quantity.hpp"
 
 namespace rvelab::records {
@@ -318,7 +319,18 @@ using Quantities = QuantityTable<  //
     Saturation,                    //
     BridgeStress,                  //
     AdhesivePairs,                 //
-    AdhesionStress                 //
+    AdhesionStress,                //
+    BoundaryWork,                  //
+    FrictionLoss,                  //
+    RollingLoss,                   //
+    DashpotLoss,                   //
+    LocalDampingLoss,              //
+    GlobalDampingLoss,             //
+    LawLoss,                       //
+    RemovedKinetic,                //
+    ReleasedByBreaking,            //
+    ReleasedByForming,             //
+    GivenByStages                  //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

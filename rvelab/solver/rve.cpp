@@ -85,6 +85,15 @@ Matrix3 strained_stress(const State& state) {
   return state.contact_stress() + state.to_lab(extrapolated(state, state.control().deferred.stretch).stress);
 }
 
+/// In interactions other than contacts, J; 0 where no energy is booked.
+double stored_in_interactions(const State& state) {
+  double sum = 0;
+  if (state.model().options.energy_balance)
+    for (const InteractionState& each : network_of(state.model(), state.assembly()).interactions)
+      sum += each.elastic_energy;
+  return sum;
+}
+
 double inertial_number(const State& state, const Matrix3& gradient, double dt, const Matrix3& stress) {
   const Model& model = state.model();
   const int d = model.dimension();
@@ -280,13 +289,18 @@ Interactions Rve::interactions() const {
 }
 
 void Rve::set_interactions(const Interactions& interactions) {
-  apply_deferred_strain(prepared_for_change(*state_));
+  const double stored = stored_in_interactions(apply_deferred_strain(prepared_for_change(*state_)));
   Specimen changed = specimen();
   static_cast<Interactions&>(changed) = interactions;
   check_specimen(changed);  // that they can form, before they are made
   prepare_interactions(changed);
   changed.state.masses = {};  // they go with the stiffness
   open_instead(changed);
+  state_->energy_balance().book(&InteractionTerms::stages, stored_in_interactions(*state_) - stored);
+}
+
+const EnergyTerms* Rve::energy_balance() const {
+  return state_->model().options.energy_balance ? &state_->assembly().state.energy_balance : nullptr;
 }
 
 const InteractionSettings& Rve::interaction_settings() const { return state_->model().interaction_settings; }

@@ -133,6 +133,10 @@ class Rve {
   /// What those form from that form by themselves (water). If set_interactions brings others, those that are there
   /// become what these make of them; without any, they go.
   const InteractionSettings& interaction_settings() const;
+  /// Energy balance since the specimen was first opened (solver/README.md); nullptr where it is not computed
+  /// (solver.energy_balance). Until the next call that changes the Rve. What set_interactions changes of the stored
+  /// energy is booked in it as given by stages.
+  const EnergyTerms* energy_balance() const;
   /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), at a rate: one of each for every grain, in the
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
   /// not size() or an entry is not finite; the RVE is then as it was.

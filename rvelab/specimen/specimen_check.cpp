@@ -154,6 +154,8 @@ class Relations : CheckedSpecimen {
       advise("state/masses/mass has " + std::to_string(state.masses.mass.size()) +
              " rows, state/masses/inverse_inertia " + std::to_string(state.masses.inverse_inertia.size()) +
              "; allowed: both one for each grain, or both none, and they are made anew");
+    if (const std::size_t rows = state.energy_balance.interactions.size(); rows > 1)
+      refuse("state/energy_balance/interactions has " + std::to_string(rows) + " rows; allowed: none, or one");
     const std::size_t n = s.grains.size();
     if (!state.memory_order.empty() && !is_permutation(state.memory_order, n))
       advise("state/memory_order is no permutation of the " + std::to_string(n) + " grains; leave it empty");

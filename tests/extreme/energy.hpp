@@ -25,7 +25,9 @@ inline double energy_in(const Rve& rve, const Matrix3& rate = Matrix3::Zero()) {
 }
 
 inline double losses_in(const EnergyTerms& l) {
-  return l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.removed_kinetic;
+  const InteractionTerms others = l.of_interactions();
+  return (l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.removed_kinetic) +
+         (others.breaking + others.forming - others.stages);
 }
 
 /// From the first evaluation on. SolverOptions::energy_balance must be on.

@@ -299,6 +299,7 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   specimen.members.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
+  specimen.state.energy_balance.interactions.resize(1);
   each_interaction_law([&](auto, auto law) {
     auto& list = static_cast<ListOf<decltype(law)>&>(specimen);
     list.items.resize(contact_count);

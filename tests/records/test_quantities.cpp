@@ -1,4 +1,5 @@
 // The table of measured quantities: what is in it is measured, kept and documented, each by itself.
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <string>
@@ -55,7 +56,10 @@ TEST_CASE("quantities of one relation have the same bits, measured together or e
     records::Record alone;
     alone.quantities = bit;
     measure_quantities(alone, rve);
-    if (std::string(Quantity::text.name) != "orientation_fabric")  // NaN of discs
+    // NaN: of discs, and without the energy balance.
+    if constexpr (std::is_same_v<ValueOf<Quantity>, double>)
+      if (std::isnan(alone.*Quantity::member) && std::isnan(together.*Quantity::member)) return;
+    if (std::string(Quantity::text.name) != "orientation_fabric")
       CHECK(alone.*Quantity::member == together.*Quantity::member);
   });
   const StressForceFabric relation = stress_force_fabric(rve.network());

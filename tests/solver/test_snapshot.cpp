@@ -65,7 +65,7 @@ TEST_CASE("a snapshot of another layout, cut short or damaged is refused in one 
   CHECK_THAT(message(longer), Contains("its head, which says"));
   CHECK_THAT(message(fitting(longer)), Contains("1 bytes are left behind its last field"));
   CHECK_THAT(message(fitting(Bytes(good.begin(), good.end() - 1))),
-             Contains("state/energy_balance/removed_kinetic_J is beyond its end"));
+             Contains("state/energy_balance/interactions is beyond its end"));
   for (std::size_t at = sizeof(SnapshotHead); at < good.size(); at += 97) {
     Bytes bad = good;
     bad[at] ^= std::byte{16};

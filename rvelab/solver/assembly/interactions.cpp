@@ -147,6 +147,22 @@ bool is_kept(const Interaction<Law>& item) {
   return Law::kept([&](int c) { return columns[c]; });
 }
 
+double thickness_of(const Model& model) { return model.dimension() == 2 ? model.thickness : 0; }
+
+/// What it releases that acts from now on and is kept, J. (What is not kept follows from where grains lie, and jumps
+/// nowhere.)
+template <FormsByItself Law>
+double released_by_new(const Interaction<Law>& item, double gap, double thickness) {
+  double sum = 0;
+  if constexpr (Law::has_energy) {
+    double columns[interaction_columns<Law>()];
+    put_columns<Law>(item, columns);
+    const auto column = [&](int c) { return columns[c]; };
+    if (Law::kept(column) && Law::acts(column, gap)) sum -= Law::energy(column, gap, thickness);
+  }
+  return sum;
+}
+
 template <FormsByItself Law>
 void prepare(const typename Law::Settings& settings, const GrainPair& pair, Interaction<Law>& item) {
   double columns[interaction_columns<Law>()];
@@ -155,12 +171,12 @@ void prepare(const typename Law::Settings& settings, const GrainPair& pair, Inte
   take_columns<Law>(columns, item);
 }
 
-/// One for each listed pair, in order.
+/// One for each listed pair, in order. Adds what new ones release.
 template <FormsByItself Law>
 std::vector<Interaction<Law>> of_listed(const Model& model, const Assembly& assembly,
                                         const std::vector<ListedPair>& listed,
-                                        const std::vector<Interaction<Law>>& before) {
-  const PairMaker pairs{model.contact, model.materials, model.dimension() == 2 ? model.thickness : 0};
+                                        const std::vector<Interaction<Law>>& before, double& released) {
+  const PairMaker pairs{model.contact, model.materials, thickness_of(model)};
   const typename Law::Settings& settings =
       static_cast<const SettingsOf<Law>&>(model.interaction_settings).settings.front();
   std::vector<Interaction<Law>> items;
@@ -179,8 +195,10 @@ std::vector<Interaction<Law>> of_listed(const Model& model, const Assembly& asse
     const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
     const Vector3 branch =
         assembly.position(model, j) + translation(assembly.cell, pair.image) - assembly.position(model, i);
-    prepare<Law>(settings,
-                 pairs.of(model.radius[i], model.material[i], model.radius[j], model.material[j], branch.norm()), item);
+    const GrainPair grains =
+        pairs.of(model.radius[i], model.material[i], model.radius[j], model.material[j], branch.norm());
+    prepare<Law>(settings, grains, item);
+    if (model.options.energy_balance) released += released_by_new<Law>(item, grains.gap, grains.thickness);
     items.push_back(item);
   }
   for (; old != before.end(); ++old)
@@ -190,8 +208,9 @@ std::vector<Interaction<Law>> of_listed(const Model& model, const Assembly& asse
 
 }  // namespace
 
-void prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
-                          double skin, Interactions& interactions) {
+double prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                            double skin, Interactions& interactions) {
+  double released = 0;
   each_interaction_law([&](auto, auto law) {
     using Law = decltype(law);
     if constexpr (FormsByItself<Law>) {
@@ -199,10 +218,11 @@ void prepare_interactions(const Model& model, const Assembly& assembly, const st
       if (settings.empty()) return;
       auto& items = static_cast<ListOf<Law>&>(interactions).items;
       const double reach = Law::reach(settings.front());
-      items = reach > 0 ? of_listed<Law>(model, assembly, near_pairs(model, assembly, skin + reach), items)
-                        : of_listed<Law>(model, assembly, listed, items);
+      items = reach > 0 ? of_listed<Law>(model, assembly, near_pairs(model, assembly, skin + reach), items, released)
+                        : of_listed<Law>(model, assembly, listed, items, released);
     }
   });
+  return released;
 }
 
 void prepare_interactions(Specimen& s) {
@@ -343,7 +363,7 @@ InteractionSums interaction_sums(const Model& model, const Assembly& assembly) {
     pair = (pair ^ (pair >> 29)) * 0xbf58476d1ce4e5b9ULL + std::uint64_t(a.kind);
     sums.acting += pair ^ (pair >> 32);
   }
-  const double thickness = model.dimension() == 2 ? model.thickness : 0;
+  const double thickness = thickness_of(model);
   for (const InteractionTable& t : assembly.pairs.interactions)
     with_interaction_law(t.kind, [&](auto law) { sums.broken += squares_of_broken<decltype(law)>(t, thickness); });
   return sums;

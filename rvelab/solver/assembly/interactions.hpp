@@ -11,9 +11,10 @@ void set_interactions(const Model& model, const Interactions& from, PairTable& p
 /// `all`: also what stands for pairs that are only near, of laws whose interactions form by themselves.
 Interactions interactions_of(const PairTable& pairs, bool all = false);
 /// Interactions that may form: of each law whose settings the specimen has, each pair that is listed (or nearer than
-/// `skin` beyond the law's reach), in order, has one; those that are not kept and not listed go.
-void prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
-                          double skin, Interactions& interactions);
+/// `skin` beyond the law's reach), in order, has one; those that are not kept and not listed go. Returns the energy (J)
+/// that new ones release which act at once, their grains having met since the last list; 0 without the energy balance.
+double prepare_interactions(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                            double skin, Interactions& interactions);
 /// Those that a specimen has become what its settings make of them.
 void prepare_interactions(Specimen& specimen);
 /// After the basis of the lattice changed, the frame turned by `turn`, grains g moved by moved[g] lattice vectors.

@@ -138,7 +138,9 @@ void fill(const Model& model, double skin, const std::vector<Contact>& carried, 
     pairs.i[p] = pairs.j[p] = std::int32_t(model.size());  // a padding grain: no extent, no mass
     pairs.image[p] = Image{1, 0, 0};
   }
-  prepare_interactions(model, assembly, listed, skin, interactions);
+  const double released = prepare_interactions(model, assembly, listed, skin, interactions);
+  if (lost == Lost::dropped && assembly.state.list.built)
+    assembly.state.energy_balance.book(&InteractionTerms::forming, released);
   set_interactions(model, interactions, pairs);
   for (int component = 0; component < model.tangential_components(); ++component) {
     pairs.tangential[component].assign(padded, 0.0);

@@ -32,6 +32,13 @@ struct ScaledMasses {
   std::vector<double> inverse_inertia;  ///< 1/(N m), of the moments of inertia
 };
 
+/// What interactions other than contacts release or are given at once, J.
+struct InteractionTerms {
+  double breaking = 0;  ///< released by bonds as they soften and break
+  double forming = 0;   ///< released by bridges and adhesion as they form and part
+  double stages = 0;    ///< given by stages that make, change or end interactions: change of what is stored
+};
+
 /// Energy balance, J, sums since the specimen was first opened (solver/README.md). Zero if it is not computed.
 struct EnergyTerms {
   double boundary_work = 0;
@@ -39,6 +46,16 @@ struct EnergyTerms {
   double local_damping = 0, global_damping = 0;
   double law_loss = 0;         ///< change of f_t^2/2kt at varying kt (Hertz-Mindlin), and M^2/2kr
   double removed_kinetic = 0;  ///< kinetic energy removed when scaled masses change or the mean velocity is taken out
+  std::vector<InteractionTerms> interactions;  ///< none (zero), or one row
+
+  /// Adds to one of the terms of interactions. Without any the row does not come to be, so that files stay what they
+  /// are.
+  void book(double InteractionTerms::*term, double energy) {
+    if (energy == 0) return;
+    if (interactions.empty()) interactions.emplace_back();
+    interactions.front().*term += energy;
+  }
+  InteractionTerms of_interactions() const { return interactions.empty() ? InteractionTerms{} : interactions.front(); }
 };
 
 namespace fields {
@@ -62,6 +79,15 @@ inline constexpr auto members_of<ScaledMasses> = std::tuple{
 };
 
 template <>
+inline constexpr auto members_of<InteractionTerms> = std::tuple{
+    Field{"released_by_breaking_J", &InteractionTerms::breaking, "J"},
+    Field{"released_by_forming_J", &InteractionTerms::forming, "J"},
+    Field{"given_by_stages_J", &InteractionTerms::stages, "J"},
+};
+template <>
+inline constexpr bool left_out_where_empty<InteractionTerms> = true;
+
+template <>
 inline constexpr auto members_of<EnergyTerms> = std::tuple{
     Field{"boundary_work_J", &EnergyTerms::boundary_work, "J"},
     Field{"friction_J", &EnergyTerms::friction, "J"},
@@ -71,6 +97,7 @@ inline constexpr auto members_of<EnergyTerms> = std::tuple{
     Field{"global_damping_J", &EnergyTerms::global_damping, "J"},
     Field{"law_loss_J", &EnergyTerms::law_loss, "J"},
     Field{"removed_kinetic_J", &EnergyTerms::removed_kinetic, "J"},
+    Table{"interactions", &EnergyTerms::interactions},
 };
 
 }  // namespace fields

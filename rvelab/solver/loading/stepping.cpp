@@ -10,6 +10,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/interactions.hpp"
+#include "rvelab/solver/assembly/released_energy.hpp"
 #include "rvelab/solver/loading/body_motion.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
@@ -191,6 +192,7 @@ class SubSteps {
   StepSums sums_;
   const bool in_one_sweep_;
   WaitingPairs waiting_;
+  ReleasedEnergy released_;
   Matrix3 rate_end_, rate_mid_, moment_before_ = Matrix3::Zero();
   Matrix3 lattice_before_ = Matrix3::Identity();  ///< of the step; bodies alone
   Vector3 mean_spin_before_ = Vector3::Zero();
@@ -312,7 +314,11 @@ void SubSteps::update_pairs() {
   else
     sweep_pairs(kernels_.pairs, c_, pairs_, assembly_.rows.data(), long(assembly_.pairs.padded()), team_);
   gather_pairs_that_touch(assembly_.pairs);
-  if (has_interactions(assembly_)) update_interactions(model_, kernels_, c_, assembly_);
+  if (has_interactions(assembly_)) {
+    if (model_.options.energy_balance) released_.keep(assembly_);
+    update_interactions(model_, kernels_, c_, assembly_);
+    if (model_.options.energy_balance) released_.book(model_, assembly_);
+  }
   clock_.end_pairs();
   if (model_.options.energy_balance)
     book_step(model_, assembly_, lost, sums_, step_, at_rate_, rate_mid_ + cross_matrix(omega_), moment_before_);

@@ -65,6 +65,7 @@ class State {
   const LastStep& last_step() const { return assembly_.state.last_step; }
   ScaledMasses& masses() { return assembly_.state.masses; }
   const ScaledMasses& masses() const { return assembly_.state.masses; }
+  EnergyTerms& energy_balance() { return assembly_.state.energy_balance; }
   const Reference& reference() const { return assembly_.state.reference; }
 
   const Matrix3& stress();  ///< of the contacts, cell frame, Pa
