@@ -133,8 +133,11 @@ struct SofteningBond {
           (of(s.bending * s.bending, s.kn * s.inertia) + of(s.twisting * s.twisting, 2.0 * (s.ks * s.inertia)));
       const auto intact = was == zero;
       const V spent = load(released);
-      store_as(p.column[released] + at, intact ? spent + (now - before) * whole : spent);
       const V how = (now < one) ? zero : ((tension > shear) ? one : two);
+      // One that breaks lets go of what pressure stored in it too.
+      const V push = (s.normal > zero) ? s.normal : zero;
+      const V pressed = (how == zero) ? zero : of(push * push, s.kn * s.area);
+      store_as(p.column[released] + at, intact ? spent + ((now - before) * whole + pressed) : spent);
       was = intact ? how : was;
       store_as(p.column[broken] + at, was);
       store_as(p.column[largest_share] + at, largest);

@@ -154,9 +154,8 @@ TEST_CASE("the balance of cemented packings closes through breaking", "[bond][en
       const double missing = missing_of_released(
           start, [&](Rve& rve) { rve.set_interactions(protocol::cemented(rve, cement)); }, 0.025,
           gradient(5e-3, 3e-2, 0, 0), 1000);
-      // Friction takes 20 to 400 times what bonds release. A softening bond that breaks pressed does not note what the
-      // pressure stored.
-      CHECK(std::abs(missing) < (model == BondModel::softening ? 0.02 : 4e-3));
+      // Friction takes 20 to 400 times what bonds release.
+      CHECK(std::abs(missing) < 4e-3);
     }
   }
 }
