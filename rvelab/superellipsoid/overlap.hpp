@@ -178,6 +178,28 @@ inline __attribute__((always_inline)) PlainStep<V> plain_step(const OverlapAt<V>
   return step;
 }
 
+/// The same in the frame of the stiffest mode, slower: beside flat sides it loses none of n to rounding (a pair of
+/// exponents up to 50 that turns as a whole keeps n to 1e-13, by the sums above to 4e-12).
+template <class V>
+inline __attribute__((always_inline)) PlainStep<V> plain_step_in_frame(const OverlapAt<V>& at, const Modes<V>& modes,
+                                                                       V rolling) {
+  PlainStep<V> step;
+  const V most = 0.9 * rolling;
+  step.shift = (at.overlap < most) ? at.overlap : most;
+  const ModeFrame<V> frame = frame_of(modes.k, modes.along, at.n, step.shift);
+  const Across<V> y = solved(frame, dot(at.downhill, frame.first), dot(at.downhill, frame.second));
+  step.plain = plus(times(y.first, frame.first), y.second, frame.second);
+  step.gain = dot(step.plain, at.downhill);
+  step.farthest = step.reach = V{};
+  for (int m = 0; m < 4; ++m) {
+    step.s[m] = frame.u1[m] * y.first + frame.u2[m] * y.second;
+    const V reach = magnitude_of(modes.growth[m] * step.s[m]);
+    step.reach = larger_of(step.reach, reach);
+    step.farthest = larger_of(step.farthest, modes.share[m] * reach);
+  }
+  return step;
+}
+
 /// The same with the turn by the laws of the modes.
 template <class V>
 struct OverlapStep : PlainStep<V> {
@@ -187,7 +209,7 @@ template <class V>
 inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V>& at, V rolling) {
   const V one = V{} + 1.0;
   Modes<V> modes = modes_of(at);
-  OverlapStep<V> step = {plain_step(at, modes, rolling), {}};
+  OverlapStep<V> step = {plain_step_in_frame(at, modes, rolling), {}};
   V followed[4];
   for (int m = 0; m < 4; ++m) {
     const V relative = (modes.growth[m] * modes.share[m]) * step.s[m];
