@@ -205,11 +205,12 @@ template <class V>
 struct OverlapStep : PlainStep<V> {
   Triple<V> turn;
 };
-template <class V>
+/// `InFrame`: by the slower of the two.
+template <bool InFrame = false, class V>
 inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V>& at, V rolling) {
   const V one = V{} + 1.0;
   Modes<V> modes = modes_of(at);
-  OverlapStep<V> step = {plain_step_in_frame(at, modes, rolling), {}};
+  OverlapStep<V> step = {InFrame ? plain_step_in_frame(at, modes, rolling) : plain_step(at, modes, rolling), {}};
   V followed[4];
   for (int m = 0; m < 4; ++m) {
     const V relative = (modes.growth[m] * modes.share[m]) * step.s[m];

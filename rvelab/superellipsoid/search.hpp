@@ -54,7 +54,7 @@ inline Triple<double> turn_by_bodies(const OverlapPair& pair, const Place& at, c
 inline Place lowest_from(const OverlapPair& pair, Place at) {
   const double size = size_of(pair), rolling = pair.form_i.rolling + pair.form_j.rolling, rounding = 1e-15 * size;
   for (int k = 0; k < 100; ++k) {
-    const OverlapStep<double> step = next_step(at, rolling);
+    const OverlapStep<double> step = next_step<true>(at, rolling);
     if (is_least(at, step, size)) break;
     const Triple<double> turns[3] = {step.turn, turn_by_bodies(pair, at, step), step.plain};
     const double slope = dot(at.downhill, at.downhill);
@@ -183,20 +183,20 @@ inline SuperellipsoidContact contact_of(const OverlapPair& pair) {
   Place at = overlap_at(pair, first_direction(pair));
   if (!(at.overlap < 1e300)) at = overlap_at(pair, pair.axes_i.x);  // the centres are one
   const Place first = at;
-  OverlapStep<double> step = next_step(at, rolling);
+  OverlapStep<double> step = next_step<true>(at, rolling);
   for (int k = 0; k < superellipsoid_steps && !is_near_least(step, 1e-6) && !is_least(at, step, size); ++k) {
     at = overlap_at(pair, turned_by(at.n, step.turn));
-    step = next_step(at, rolling);
+    step = next_step<true>(at, rolling);
   }
   bool found = is_near_least(step, 1e-6) || is_least(at, step, size);
   if (!found) {
     at = lowest_from(pair, at.overlap < first.overlap ? at : first);
-    step = next_step(at, rolling);
+    step = next_step<true>(at, rolling);
     found = step.gain <= 1e-14 * size;
   }
   if (!(found && at.overlap <= rolling)) {
     at = search_least(pair, at);
-    step = next_step(at, rolling);
+    step = next_step<true>(at, rolling);
   }
   return contact_at(pair, at, step);
 }
