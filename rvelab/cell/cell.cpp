@@ -99,6 +99,8 @@ void annihilate(TriangularFactors& factors, int p, int q) {
   factors.upper(q, p) = 0.0;
 }
 
+bool is_identity(const Matrix3& m) { return (m.array() == Matrix3::Identity().array()).all(); }
+
 // Cube root of a number near one by Newton's method: no libm in what touches state.
 double cube_root_near_one(double x) {
   double y = 1;
@@ -116,8 +118,12 @@ FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradien
   if (!(determinant > 0.0) || !std::isfinite(determinant)) refuse_determinant(determinant);
   // I + Q^T dH Q rather than Q^T (I + dH) Q, with Q at its most orthogonal: det(Q)^2 - 1 of round-off would
   // otherwise inflate the cell at every increment, and push a rotation over the limit of `rigid`.
-  const Matrix3 frame = renormalised(cell.rotation);
-  const Matrix3 in_frame = frame.transpose() * gradient * frame;
+  // A frame that never turned needs neither.
+  Matrix3 in_frame = gradient;
+  if (!is_identity(cell.rotation)) {
+    const Matrix3 frame = renormalised(cell.rotation);
+    in_frame = frame.transpose() * gradient * frame;
+  }
   const TriangularFactors factors = triangular_factors(Matrix3::Identity() + in_frame);
   for (int k = 0; k < 3; ++k)
     if (!(factors.upper(k, k) > 0.0) || !std::isfinite(factors.upper(k, k)))
@@ -137,7 +143,7 @@ Matrix3 with_volume_ratio(const Matrix3& displacement_gradient, double ratio, in
 }
 
 void turn_frame(Cell& cell, const Matrix3& frame_rotation) {
-  cell.rotation = (cell.rotation * frame_rotation).eval();
+  if (!is_identity(frame_rotation)) cell.rotation = (cell.rotation * frame_rotation).eval();
   cell.rotation.array() += 0.0;  // no -0, so that quarter turns come back to the same bits
   if (++cell.increments < increments_between_renormalisations) return;
   cell.rotation = renormalised(cell.rotation);
@@ -178,7 +184,7 @@ TriangularFactors triangular_factors(const Matrix3& matrix) {
   annihilate(factors, 0, 2);
   annihilate(factors, 1, 2);
   // Three rotations leave R off the orthogonal matrices by some units of round-off, which would add up in the frame.
-  factors.rotation = renormalised(factors.rotation);
+  if (!is_identity(factors.rotation)) factors.rotation = renormalised(factors.rotation);
   // Adding zero turns -0 into +0: equal states then are equal bit for bit.
   factors.rotation.array() += 0.0;
   factors.upper.array() += 0.0;

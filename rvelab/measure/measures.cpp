@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "rvelab/measure/deviator.hpp"
 
@@ -131,6 +133,16 @@ std::vector<bool> rattlers(const Network& network) {
 
 double coordination_number(const Network& network) {
   return network.grains.empty() ? not_defined : 2.0 * network.contacts.size() / network.grains.size();
+}
+
+double touching_neighbours(const Network& network) {
+  if (!network.has_bodies() || network.has_solids()) return coordination_number(network);
+  std::vector<std::tuple<std::int32_t, std::int32_t, Image>> pairs;
+  pairs.reserve(network.contacts.size());
+  for (const ContactState& c : network.contacts) pairs.emplace_back(c.i, c.j, c.image);
+  std::sort(pairs.begin(), pairs.end());
+  const auto different = std::unique(pairs.begin(), pairs.end()) - pairs.begin();
+  return 2.0 * double(different) / double(network.grains.size());
 }
 
 double mechanical_coordination_number(const Network& network) {

@@ -53,6 +53,9 @@ std::vector<bool> rattlers(const Network& network);
 /// Z = 2 Nc/N, all grains counted.
 double coordination_number(const Network& network);
 
+/// 2 Np/N, Np pairs of grains that touch. Bodies may touch in several contacts: those count once.
+double touching_neighbours(const Network& network);
+
 /// Z_mech = 2 Nc/N without rattlers and their contacts.
 double mechanical_coordination_number(const Network& network);
 

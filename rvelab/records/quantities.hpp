@@ -49,6 +49,13 @@ struct MechanicalCoordinationNumber {
   static double measure(const MeasuredState& state) { return rvelab::mechanical_coordination_number(state.network); }
 };
 
+struct TouchingNeighbours {
+  double touching_neighbours = 0;
+  static constexpr QuantityText text{"touching_neighbours", "1", "2 Np/N, Np pairs of grains, of clumps, that touch"};
+  static constexpr auto member = &TouchingNeighbours::touching_neighbours;
+  static double measure(const MeasuredState& state) { return rvelab::touching_neighbours(state.network); }
+};
+
 // Quantities of the directions of contacts and grains, laboratory frame (rvelab/measure/measures.hpp).
 
 struct Fabric {
@@ -330,7 +337,8 @@ using Quantities = QuantityTable<  //
     RemovedKinetic,                //
     ReleasedByBreaking,            //
     ReleasedByForming,             //
-    GivenByStages                  //
+    GivenByStages,                 //
+    TouchingNeighbours             //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "rvelab/cell/cell.hpp"
@@ -110,14 +111,19 @@ double inertial_number(const State& state, const Matrix3& gradient, double dt, c
   return rate > 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-Response respond(State& state, const Report& report, const Matrix3& gradient, double dt) {
-  Matrix3 in_cell = state.stress();
-  if (state.has_deferred()) in_cell += extrapolated(state, state.control().deferred.stretch).stress;
-  const Matrix3 contact = state.to_lab(in_cell), reynolds = state.reynolds_stress();
+/// `by_deferred`: change of the stress by the deferred strain, cell frame, Pa.
+Response respond(State& state, const Report& report, const Matrix3& gradient, double dt, const Matrix3& by_deferred) {
+  const Matrix3 contact = state.to_lab(state.stress() + by_deferred), reynolds = state.reynolds_stress();
   Response r{contact + reynolds, contact, reynolds, gradient, report};
   r.report.cell_thin = state.is_thin(state.cell());
   if (loading_of(dt) == Loading::at_rate) r.report.inertial_number = inertial_number(state, gradient, dt, r.stress);
   return r;
+}
+
+Response respond(State& state, const Report& report, const Matrix3& gradient, double dt) {
+  Matrix3 by_deferred = Matrix3::Zero();
+  if (state.has_deferred()) by_deferred = extrapolated(state, state.control().deferred.stretch).stress;
+  return respond(state, report, gradient, dt, by_deferred);
 }
 
 /// An increment as it is checked and split once.
@@ -177,12 +183,18 @@ Response Rve::begin(const Matrix3& displacement_gradient, double dt, Beginning b
     expect_time(dt);
     const CallClock clock(state.model().times);
     const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
-    // A deferred increment moves no grain: its trial is the cell alone.
-    const bool deferred = loading_of(dt) == Loading::quasi_static && may_defer(state, increment.split);
-    if (deferred) state.need_forces();
-    return run_as_trial(state, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
-      const Report report = deferred ? defer(state, increment.split) : load(state, increment, beginning);
-      return respond(state, report, displacement_gradient, dt);
+    std::optional<Deferral> deferral;
+    if (loading_of(dt) == Loading::quasi_static) deferral = deferral_of(state, increment.split);
+    if (!deferral)
+      return run_as_trial(state, Trial::Changes::grains, [&] {
+        const Report report = load(state, increment, beginning);
+        return respond(state, report, displacement_gradient, dt);
+      });
+    // It moves no grain: the trial is the cell alone.
+    state.need_forces();
+    return run_as_trial(state, Trial::Changes::deferred_strain, [&] {
+      const Report report = defer(state, increment.split, *deferral);
+      return respond(state, report, displacement_gradient, dt, deferral->change.stress);
     });
   } catch (...) {
     state.need_forces();

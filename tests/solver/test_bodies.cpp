@@ -23,6 +23,18 @@ TEST_CASE("Clumps that meet keep momentum, angular momentum and energy") {
   }
 }
 
+TEST_CASE("Two pairs of spheres side by side have two contacts and one neighbour each") {
+  Specimen s = empty_specimen(Shape::sphere, 0.2, linear_material(1e6, 5e5, 0.5));
+  const Clump pair = published_clump("pair", 3);
+  const double apart = 2 * 0.01 * pair.members[0].radius * (1 - 1e-4);
+  add_clump(s, pair, 0.01, Vector3::Zero(), Turn{});
+  add_clump(s, pair, 0.01, {0, apart, 0}, Turn{});
+  const Network network = Rve(s).network();
+  CHECK(network.contacts.size() == 2);
+  CHECK(coordination_number(network) == 2);
+  CHECK(touching_neighbours(network) == 1);
+}
+
 TEST_CASE("A clump in flight turns as a free top") {
   Specimen s = empty_specimen(Shape::sphere, 0.2, linear_material(1e6, 5e5, 0.5));
   add_clump(s, clump_of("top", {{{0, 0, 0}, 1}, {{0.9, 0.3, 0}, 0.7}, {{-0.2, 0.8, 0.5}, 0.6}}, 3), 0.01,

@@ -4,8 +4,8 @@
 // turned, on with a rotation, anyhow. The constants of quasi_static/constants.hpp were fitted to packings of even
 // seeds from 2 to 36. Seeds from 101 on are of five kinds and most of their increments long (first_of_kinds): 101 to
 // 110 were looked at when the error of the way was chosen (add_error_of_path), 111 to 120 afterwards. Those from 201 on
-// are cemented or moist (estimates_packings.hpp): 201 to 220 were looked at when events.hpp was made, 221 to 270
-// afterwards.
+// are cemented or moist: 201 to 220 were looked at when events.hpp was made, 221 to 270 afterwards. Those from 321 on
+// are clumps and superellipsoids: nothing was made by looking at them.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance
@@ -98,8 +98,10 @@ long resolved_substeps(double strain_over_overlap) {
 }
 
 Matrix3 resolved(Specimen s, const Matrix3& gradient, long substeps, bool nudged) {
-  if (nudged)
+  if (nudged) {
     for (Vector3& x : s.grains.position) x[0] = std::nextafter(x[0], 1e9);
+    for (Body& body : s.bodies) body.position[0] = std::nextafter(body.position[0], 1e9);
+  }
   s.solver.fixed_substeps = substeps;
   s.solver.target_unbalanced = 0;
   Rve rve(s);
@@ -121,9 +123,9 @@ std::vector<Increment> increments_of(std::uint64_t seed, int state, std::size_t 
     Increment& i = all[k];
     i.seed = seed;
     i.state = state;
-    const bool interacting = seed >= first_with_interactions;
-    i.direction = (interacting ? k + seed / 5 + std::size_t(state) : k) % 5;
-    const double shortest = seed >= first_of_kinds && !interacting && k % 7 != 6 ? -3 : -6;
+    const bool spread_out = seed >= first_with_interactions;  // directions and lengths
+    i.direction = (spread_out ? k + seed / 5 + std::size_t(state) : k) % 5;
+    const double shortest = seed >= first_of_kinds && !spread_out && k % 7 != 6 ? -3 : -6;
     i.length = random.power(shortest, std::min(-2.0, 2 - std::log10(kappa)));  // beyond, no truth can be known
     i.gradient = i.length * way(dimension, i.direction, random);
     double value[11];
@@ -299,7 +301,7 @@ int main(int argc, char** argv) {
               "met", "truly", "steps", "chaotic", "covered", "known");
   for (const auto& [seed, of] : of_seed)
     print(std::to_string(seed) + ": " + in_words(seed), of, [](const Increment&) { return true; });
-  for (int k = 0; k < 3 && first < first_with_interactions; ++k)
+  for (int k = 0; k < 3 && !is_interacting(first); ++k)
     print("after " + std::to_string(percents[k]) + " %", all, [&](const Increment& i) { return i.state == k; });
   for (std::size_t k = 0; k < 5; ++k) print(directions[k], all, [&](const Increment& i) { return i.direction == k; });
   for (int k = -6; k < -2; ++k)
@@ -308,6 +310,8 @@ int main(int argc, char** argv) {
   if (first < first_of_kinds) {
     print("fitted (even seeds)", all, [](const Increment& i) { return i.seed % 2 == 0; });
     print("held out (odd seeds)", all, [](const Increment& i) { return i.seed % 2 == 1; });
+  } else if (first >= first_of_shapes) {
+    for (std::size_t k = 0; k < 5; ++k) print(shape_kinds[k], all, [&](const Increment& i) { return i.seed % 5 == k; });
   } else if (first >= first_with_interactions) {
     for (std::size_t k = 0; k < 5; ++k) {
       const std::string kind = interacting_kinds[k];

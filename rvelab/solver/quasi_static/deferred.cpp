@@ -20,36 +20,38 @@ Extrapolated extrapolated(const State& state, const Matrix3& stretch) {
   return {along * deferred.stress_slope, std::abs(along) * deferred.slope_error + elastic_stress_change(state, across)};
 }
 
-bool may_defer(State& state, const FrameSplit& increment) {
+std::optional<Deferral> deferral_of(State& state, const FrameSplit& increment) {
   const QuasiStaticControl& control = state.control();
   if (increment.rigid || !by_tolerance(state) || state.last_step().loading != Loading::quasi_static ||
       !state.masses().in_use || control.deferred.stress_slope.isZero(0) || !(control.interval.network_stiffness > 0))
-    return false;
+    return {};
   const Matrix3 change = increment.stretch - Matrix3::Identity(),
                 stretch = increment.stretch * control.deferred.stretch;
   const double strain = change.norm();
-  if ((stretch - Matrix3::Identity()).norm() + strain > part_of_step * control.strain_per_step) return false;
+  if ((stretch - Matrix3::Identity()).norm() + strain > part_of_step * control.strain_per_step) return {};
   // Increments off the path, for a tangent by differences, are never deferred.
   if (!(change.cwiseProduct(state.last_step().rate).sum() > along_path * strain * state.last_step().rate.norm()))
-    return false;
+    return {};
   const double elastic_change = elastic_stress_change(state, control.strain_since_reversal);
-  if (was_coarser(state, elastic_change)) return false;
-  return extrapolated(state, stretch).error <= share_of_extrapolation * allowed_on_path(state, elastic_change);
+  if (was_coarser(state, elastic_change)) return {};
+  const Extrapolated after = extrapolated(state, stretch);
+  if (!(after.error <= share_of_extrapolation * allowed_on_path(state, elastic_change))) return {};
+  return Deferral{stretch, after, elastic_change};
 }
 
-Report defer(State& state, const FrameSplit& increment) {
+Report defer(State& state, const FrameSplit& increment, const Deferral& deferral) {
   const QuasiStaticControl& control = state.control();
   const Matrix3 before = extrapolated(state, control.deferred.stretch).stress;
-  state.set_deferred_and_turn(increment.stretch * control.deferred.stretch, increment.rotation);
+  state.set_deferred_and_turn(deferral.stretch, increment.rotation);
   Report report;
   report.unbalanced_ratio = control.unbalanced_ratio;
   const double of_start = factor_of_last_start(state);
   judge_equilibrium(state, report, of_start > 0 ? report.unbalanced_ratio : 0);
-  const Extrapolated after = extrapolated(state, control.deferred.stretch);
-  const JudgedIncrement judged{
-      .unbalanced_ratio = control.unbalanced_ratio, .extrapolation_error = after.error, .start_error_factor = of_start};
-  estimate_by_tolerances(state, elastic_stress_change(state, control.strain_since_reversal),
-                         state.stress() + before - after.stress, judged, report);
+  const JudgedIncrement judged{.unbalanced_ratio = control.unbalanced_ratio,
+                               .extrapolation_error = deferral.change.error,
+                               .start_error_factor = of_start};
+  estimate_by_tolerances(state, deferral.elastic_change, state.stress() + before - deferral.change.stress, judged,
+                         report);
   return report;
 }
 

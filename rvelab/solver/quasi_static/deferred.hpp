@@ -3,16 +3,11 @@
 // times the sub-steps of one in pieces of 1e-5.
 #pragma once
 
+#include <optional>
+
 #include "rvelab/solver/state/state.hpp"
 
 namespace rvelab {
-
-/// Whether the stress of an increment can be extrapolated within what its tolerance allows.
-bool may_defer(State& state, const FrameSplit& increment);
-/// Leaves it to the next sub-step. Moves no grain; cannot fail.
-Report defer(State& state, const FrameSplit& increment);
-/// Whether an increment can be made in one with what is deferred.
-bool is_along_deferred(const State& state, const FrameSplit& increment);
 
 /// Change of the contact stress by a stretch of the cell that the grains have not made, cell frame, Pa, and what it may
 /// err by.
@@ -21,6 +16,18 @@ struct Extrapolated {
   double error = 0;
 };
 Extrapolated extrapolated(const State& state, const Matrix3& stretch);
+
+/// All that is left to the next sub-step with an increment, whose stress can be extrapolated within its tolerance.
+struct Deferral {
+  Matrix3 stretch;
+  Extrapolated change;
+  double elastic_change;  ///< Pa, of the path
+};
+std::optional<Deferral> deferral_of(State& state, const FrameSplit& increment);
+/// Leaves it. Moves no grain; cannot fail.
+Report defer(State& state, const FrameSplit& increment, const Deferral& deferral);
+/// Whether an increment can be made in one with what is deferred.
+bool is_along_deferred(const State& state, const FrameSplit& increment);
 
 /// Notes the slope of an increment that is made, from the stress before it; none where the cell frame turned meanwhile.
 void note_slope(State& state, const Matrix3& stretch, const Matrix3& stress_before, bool same_frame);
