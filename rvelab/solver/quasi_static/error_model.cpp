@@ -42,12 +42,9 @@ double elastic_stress_change(const State& state, double strain) {
 }
 
 double overlap_strain(State& state) {
-  // Where bonds alone hold the grains no strain closes or opens a contact: without force the strain of their pressure,
-  // none, took 50,000 sub-steps instead of 30 for a first increment.
   const double stiffness = state.control().interval.network_stiffness;
-  return stiffness > 0 && state.out_of_balance().touching > 0
-             ? strain_of_overlap(pressure_scale(state), stiffness, state.model().hardening)
-             : std::numeric_limits<double>::infinity();
+  return stiffness > 0 ? strain_of_overlap(pressure_scale(state), stiffness, state.model().hardening)
+                       : std::numeric_limits<double>::infinity();
 }
 
 double allowed_by_tolerances(State& state, double stress_change, double elastic_change) {
