@@ -1,6 +1,7 @@
 // Bonds between many grains: crystals in closed form, the elastic tangent, energy and momentum, trials and restarts,
 // cells that are reduced, cement drawn by seed.
 #include <map>
+#include <random>
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/probe.hpp"
@@ -62,6 +63,32 @@ TEST_CASE("bonded crystals have the elastic constants of their beams", "[bond]")
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) CHECK(std::abs(tangent(i, j) - (i == j ? axial : 0)) < 1e-8 * axial);
     for (int k = n; k < tangent.rows(); ++k) CHECK(tangent(k, k) == Approx(shear).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("what bonds alone hold without force is strained in a few sub-steps, within the tolerance", "[bond]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    INFO(name(shape));
+    const int side = dimension_of(shape) == 2 ? 8 : 4;
+    const double a = 0.01;
+    Specimen s = crystal(shape, side, a, 0.004, cement_of(1e30)).specimen();
+    static_cast<Interactions&>(s) = {};
+    std::mt19937 engine(1);
+    for (Vector3& x : s.grains.position)
+      for (int k = 0; k < dimension_of(shape); ++k) x[k] += 0.1 * a * (double(engine()) / 4294967296.0 - 0.5);
+    Rve rve(s);
+    rve.set_interactions(protocol::cemented(rve, cement_of(1e30, 0.9)));
+    REQUIRE(contact_stress(rve.network()).norm() < 1e-6);  // Pa
+    for (const double strain : {1e-6, 1e-4}) {
+      Rve strained(rve);
+      const Response made = strained.apply(strain * gradient(0, 0, 1, 0), 0);
+      CHECK(made.report.substeps < 200);
+      CHECK(made.report.tolerance_met);
+      REQUIRE(strained.relax(1e-6, 1'000'000).target_held);
+      const double error = (made.stress - strained.stress()).norm();
+      CHECK(error <= made.report.error_estimate);
+      CHECK(error < 1e-2 * strained.stress().norm());
+    }
   }
 }
 
