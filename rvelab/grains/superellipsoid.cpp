@@ -36,4 +36,10 @@ Extent SuperellipsoidGrain::extent(const Own& own) {
   return {outer, inner, ellipsoid ? outer - inner : std::sqrt(std::max(0.0, (outer - inner) * (outer + inner)))};
 }
 
+SuperellipsoidGrain::Radii SuperellipsoidGrain::radii_of_curvature(const Own& own) {
+  const auto [least, most] = std::minmax({own.half_x, own.half_y, own.half_z});
+  const double exponent = std::max(own.exponent_xy, own.exponent_z), tip = least * least / most;
+  return {tip / (exponent - 1), exponent == 2 ? most * most / least : flattest_side * most};
+}
+
 }  // namespace rvelab

@@ -15,7 +15,7 @@ struct SuperellipsoidGrain {
   static constexpr const char* name = "superellipsoid";
   static constexpr int dimension = 3;
   static constexpr bool round = false, rigid = true, pairs_hold_radii = false, fills_rows = false,
-                        has_hertz_curvature = false;
+                        has_hertz_curvature = true;
 
   static constexpr int row_length = 24, released_mass = 7, released_inverse_inertia = 11;
 
@@ -43,6 +43,11 @@ struct SuperellipsoidGrain {
   static double inertia(double mass, double radius, const Own& own);
   /// `turning`: a - c of ellipsoids, |x n| being at most that; else sqrt(R^2 - r^2), since |x x n|^2 = |x|^2 - h^2.
   static Extent extent(const Own& own);
+  /// Bounds on its radii of curvature, m, no larger than those that count (superellipsoid/support.hpp).
+  struct Radii {
+    double least, largest;
+  };
+  static Radii radii_of_curvature(const Own& own);
 };
 
 inline constexpr double largest_exponent = 20;

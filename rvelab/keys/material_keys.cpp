@@ -135,8 +135,9 @@ std::vector<KeyEntry> contacts() {
       entry(t, "unload_rescale", "-", &ContactModel::unload_rescale, any,
             "hertz_mindlin: the tangential force falls with sqrt(overlap) on unloading"),
       entry(t, "hertz_radius", "-", &ContactModel::hertz_radius, any,
-            "hertz_mindlin, ellipses: radius of the law: sqrt(a b), or a^2 b^2/h^3 of the curvature at the contact, "
-            "which conserves no energy"),
+            "hertz_mindlin, ellipses and superellipsoids: radius of the law: that of the disc or sphere of the same "
+            "size, or "
+            "of the curvature at the contact, which conserves no energy"),
   };
 }
 

@@ -11,6 +11,9 @@
 //   d M     = likewise turned, - k_r P (dtheta_j - dtheta_i), rescaled as f_t
 //   d x_i   = (dp_i + dp_j + db)/2,   dp_i = dtheta_i x p_i + C_i (dn - dtheta_i x n), dp_j likewise with -C_j
 //   T_i     = -x_i x F - M,   T_j = x_j x F + M
+// With Hertz's radius from the curvature (contact/hertz_curvature.hpp) f_n changes by f_n dR*/(2 R*) besides, and d
+// delta in the rescaling of f_t is d delta + delta dR*/R*.
+//
 // (the second: p_i - p_j - b = delta n stays along n.) Of two spheres this is contact_linear.hpp.
 #pragma once
 
@@ -20,6 +23,7 @@ namespace rvelab {
 
 /// `i`, `j`: grains of a network of superellipsoids, `axes`: those of their shapes, cell frame.
 LinearOutlineContact linearised_solids(const ContactState& contact, const GrainState& i, const Matrix3& axes_i,
-                                       const GrainState& j, const Matrix3& axes_j);
+                                       const GrainState& j, const Matrix3& axes_j,
+                                       HertzRadius hertz_radius = HertzRadius::equivalent);
 
 }  // namespace rvelab

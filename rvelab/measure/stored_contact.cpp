@@ -37,7 +37,10 @@ StoredPlace place_of(const Specimen& specimen, const Contact& contact) {
     } else if constexpr (By::rigid) {
       const auto i = solid_row<shape>(specimen, contact.i), j = solid_row<shape>(specimen, contact.j);
       const auto at = Outline<shape>::place({b[0], b[1], b[2]}, i.data(), j.data());
-      return {at.overlap, 1, {at.normal.x, at.normal.y, at.normal.z}};
+      const auto& radius = specimen.grains.radius;
+      return {at.overlap,
+              radius_ratio_of(at.hertz_radius, radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]),
+              {at.normal.x, at.normal.y, at.normal.z}};
     } else {
       const auto row = [&](std::int32_t k) {
         const Vector3& axis = specimen.grains.orientation[std::size_t(k)];

@@ -90,9 +90,9 @@ Spring spring_of(const Network& network, const ContactState& contact) {
     return spring;
   }
   const LinearOutlineContact linear =
-      network.has_solids()
-          ? linearised_solids(contact, i, network.axes[std::size_t(contact.i)], j, network.axes[std::size_t(contact.j)])
-          : linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
+      network.has_solids() ? linearised_solids(contact, i, network.axes[std::size_t(contact.i)], j,
+                                               network.axes[std::size_t(contact.j)], hertz_radius(network))
+                           : linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
   Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (!unloads) return spring;
   const Matrix9 half = 0.5 * rows_of(linear.unloading);

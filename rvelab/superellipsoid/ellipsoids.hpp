@@ -82,6 +82,22 @@ struct EllipsoidPair {
   Triple<V> branch;
 };
 
+/// Of two that touch where n is normal to both (support.hpp). det C = det M/h^4; det(C_i + C_j) the sum of the
+/// principal minors, since the third principal value, along n, is 0.
+template <class V>
+inline __attribute__((always_inline)) V hertz_radius(const EllipsoidPair<V>& pair, const Triple<V>& n) {
+  const EllipsoidMatrix<V>&mi = pair.i, &mj = pair.j;
+  const EllipsoidAt<V> i = ellipsoid_at(mi, n), j = ellipsoid_at(mj, n);
+  const V own_i = radii_of_curvature(mi, i).product, own_j = radii_of_curvature(mj, j).product;
+  const Triple<V>&xi = i.point, &xj = j.point;
+  const auto radii = [&](V m_i, V m_j, V of_i, V of_j) { return i.inverse * (m_i - of_i) + j.inverse * (m_j - of_j); };
+  const V xx = radii(mi.xx, mj.xx, xi.x * xi.x, xj.x * xj.x), yy = radii(mi.yy, mj.yy, xi.y * xi.y, xj.y * xj.y);
+  const V zz = radii(mi.zz, mj.zz, xi.z * xi.z, xj.z * xj.z), yz = radii(mi.yz, mj.yz, xi.y * xi.z, xj.y * xj.z);
+  const V xz = radii(mi.xz, mj.xz, xi.x * xi.z, xj.x * xj.z), xy = radii(mi.xy, mj.xy, xi.x * xi.y, xj.x * xj.y);
+  const V both = (xx * yy - xy * xy) + ((xx * zz - xz * xz) + (yy * zz - yz * yz));
+  return square_root(own_i * own_j / both);
+}
+
 /// Where to begin: the normal of the ellipsoid of M_i + M_j where the branch leaves it.
 template <class V>
 inline __attribute__((always_inline)) Triple<V> first_direction(const EllipsoidPair<V>& pair) {

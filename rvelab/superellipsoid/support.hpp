@@ -154,15 +154,32 @@ inline __attribute__((always_inline)) RadiiOfCurvature<V> radii_of_curvature(con
           at.xy.stiffness * (at.z.stiffness * dot(area, area))};
 }
 
-/// Hertz's radius of one body from its curvature at the contact, m: that of the Gaussian curvature, or of the mean one
-/// (1/r + 1/s)/2; no more than `most`, since flat sides have none.
+/// A side whose radius of curvature is more than this many times the longest half axis is flat, and counts as that:
+/// flat sides have none. That of an ellipsoid is never more.
+constexpr double flattest_side = 10;
 template <class V>
-inline __attribute__((always_inline)) V gauss_radius(const RadiiOfCurvature<V>& radii, V most) {
-  return (radii.product < most * most) ? square_root(radii.product) : most;
+inline __attribute__((always_inline)) V largest_radius(const Triple<V>& half) {
+  return flattest_side * larger_of(half.x, larger_of(half.y, half.z));
 }
+
+/// Hertz's radius of a contact from the curvatures of both bodies there, m: R* = 1/sqrt(k' k''), k the principal values
+/// of the sum of their curvature tensors (Johnson 1985, Contact Mechanics, 4.2). With C the tensors of the radii,
+/// det(C_i^-1 + C_j^-1) = det(C_i + C_j)/(det C_i det C_j). `most`: largest_radius of either.
 template <class V>
-inline __attribute__((always_inline)) V mean_radius(const RadiiOfCurvature<V>& radii, V most) {
-  return (2.0 * radii.product < most * radii.sum) ? 2.0 * radii.product / radii.sum : most;
+inline __attribute__((always_inline)) V hertz_radius(const SupportAt<V>& i, const SupportAt<V>& j, V most_i, V most_j) {
+  const SupportMode<V>* modes[4] = {&i.xy, &i.z, &j.xy, &j.z};
+  V k[4];
+  for (int m = 0; m < 4; ++m) {
+    const V squared = dot(modes[m]->along, modes[m]->along), most = m < 2 ? most_i : most_j;
+    k[m] = (modes[m]->stiffness * squared < most) ? modes[m]->stiffness : most / squared;
+  }
+  const auto product = [&](int m, int l) {
+    const Triple<V> area = cross(modes[m]->along, modes[l]->along);
+    return (k[m] * dot(area, area)) * k[l];
+  };
+  const V own_i = product(0, 1), own_j = product(2, 3);
+  const V both = (own_i + own_j) + ((product(0, 2) + product(0, 3)) + (product(1, 2) + product(1, 3)));
+  return square_root(own_i * own_j / both);
 }
 
 }  // namespace

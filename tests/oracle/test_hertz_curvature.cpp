@@ -5,7 +5,7 @@
 #include <random>
 
 #include "rvelab/error.hpp"
-#include "tests/specimens.hpp"
+#include "tests/bodies.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -280,6 +280,24 @@ TEST_CASE("Pressed flank to flank, turned at the same overlap and parted tip to 
     else
       CHECK(flanks == Approx(tips).epsilon(1e-11));
   }
+}
+
+TEST_CASE("Flanks of spheroids that lie crossed press as Hertz says of both curvatures") {
+  const double a = 0.013, b = 0.008, overlap = 2e-5;
+  Material m = body_material();
+  Specimen s = empty_specimen(Shape::superellipsoid, 0.2, m, Law::hertz_mindlin);
+  s.contact.hertz_radius = HertzRadius::curvature;
+  add_superellipsoid(s, {b, b, a, 2, 2}, {0, 0, 0}, Turn{});
+  add_superellipsoid(s, {b, b, a, 2, 2}, {2 * b - overlap, 0, 0}, cayley_turn({2, 0, 0}));  // by 90 degrees about x
+  const Network network = Rve(s).network();
+  REQUIRE(network.contacts.size() == 1);
+  const double radius = 1 / (1 / b + b / (a * a)), compliance = 2 * (1 - m.poisson_ratio * m.poisson_ratio),
+               shear = 4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio), root = std::sqrt(radius * overlap);
+  const ContactState& c = network.contacts[0];
+  CHECK(c.overlap == Approx(overlap).epsilon(1e-9));
+  CHECK(c.normal_force == Approx(4.0 / 3 * m.young_modulus / compliance * root * overlap).epsilon(1e-9));
+  CHECK(c.normal_stiffness == Approx(2 * m.young_modulus / compliance * root).epsilon(1e-9));
+  CHECK(c.tangential_stiffness == Approx(8 * m.young_modulus / shear * root).epsilon(1e-9));
 }
 
 TEST_CASE("Hertz's radius from curvature is refused where there is none, by name") {

@@ -1,5 +1,6 @@
 // Many pairs at a time: the bits of one pair alone, whatever the width and wherever a search begins; ellipsoids by
 // their own formulas; forces and moments.
+#include "rvelab/grains/superellipsoid.hpp"
 #include "rvelab/superellipsoid/ellipsoids.hpp"
 #include "tests/catch.hpp"
 #include "tests/superellipsoid/random_pairs.hpp"
@@ -148,20 +149,47 @@ TEST_CASE("ellipsoids by their own formulas are the superellipsoids of exponents
   }
 }
 
-TEST_CASE("Hertz's radius from curvature: spheres, tips and flanks of spheroids, flat sides") {
-  const auto radii = [](const Superellipsoid& s, const Vector& n) {
-    return radii_of_curvature(support_at(plain_form_of(s), own_axes, n));
+TEST_CASE("Hertz's radius from curvature: spheres, tips, flanks side by side and crossed, flat sides") {
+  const Axes crossed = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};  // z of the body along -y
+  const auto radius = [](const Superellipsoid& i, const Superellipsoid& j, const Vector& n, const Axes& axes_j) {
+    const auto form_i = plain_form_of(i), form_j = plain_form_of(j);
+    return hertz_radius(support_at(form_i, own_axes, n), support_at(form_j, axes_j, times(-1.0, n)),
+                        largest_radius(form_i.half), largest_radius(form_j.half));
   };
   const double a = 1.3, b = 0.4;
-  CHECK(gauss_radius(radii({a, a, a, 2, 2}, of_length_1(Vector{1, 2, 3})), 9.0) == Approx(a).epsilon(1e-13));
-  CHECK(mean_radius(radii({a, a, a, 2, 2}, of_length_1(Vector{1, 2, 3})), 9.0) == Approx(a).epsilon(1e-13));
+  const Vector any = of_length_1(Vector{1, 2, 3});
+  CHECK(radius({a, a, a, 2, 2}, {b, b, b, 2, 2}, any, crossed) == Approx(a * b / (a + b)).epsilon(1e-12));
   const Superellipsoid spheroid = {b, b, a, 2, 2};
-  CHECK(gauss_radius(radii(spheroid, {0, 0, 1}), 9.0) == Approx(b * b / a).epsilon(1e-12));
-  CHECK(mean_radius(radii(spheroid, {0, 0, 1}), 9.0) == Approx(b * b / a).epsilon(1e-12));
-  CHECK(gauss_radius(radii(spheroid, {1, 0, 0}), 9.0) == Approx(a).epsilon(1e-12));
-  CHECK(mean_radius(radii(spheroid, {1, 0, 0}), 9.0) == Approx(2 / (b / (a * a) + 1 / b)).epsilon(1e-12));
-  CHECK(gauss_radius(radii({1, 1, 1, 8, 8}, {0, 0, 1}), 9.0) == 9);
-  CHECK(mean_radius(radii({1, 1, 1, 8, 8}, {0, 0, 1}), 9.0) == 9);
+  CHECK(radius(spheroid, spheroid, {0, 0, 1}, own_axes) == Approx(0.5 * b * b / a).epsilon(1e-12));
+  // Flanks have the radii b and a^2/b.
+  CHECK(radius(spheroid, spheroid, {1, 0, 0}, own_axes) == Approx(0.5 * a).epsilon(1e-12));
+  CHECK(radius(spheroid, spheroid, {1, 0, 0}, crossed) == Approx(1 / (1 / b + b / (a * a))).epsilon(1e-12));
+  const Superellipsoid block = {1, 1, 1, 8, 8};
+  CHECK(radius(block, block, {0, 0, 1}, own_axes) == Approx(0.5 * flattest_side).epsilon(1e-12));
+  Draw draw;
+  for (const OverlapPair& pair : drawn_pairs(draw, 200, 2, 3)) {
+    const Vector n = contact_of(pair).n;
+    const EllipsoidPair<double> same = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
+                                        ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
+    const double general =
+        hertz_radius(support_at(pair.form_i, pair.axes_i, n), support_at(pair.form_j, pair.axes_j, times(-1.0, n)),
+                     largest_radius(pair.form_i.half), largest_radius(pair.form_j.half));
+    CHECK(hertz_radius(same, n) == Approx(general).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("Radii of curvature lie within their bounds") {
+  Draw draw;
+  for (int k = 0; k < 300; ++k) {
+    const Superellipsoid s = draw.shape(k % 2 == 0 ? 2 : 8, 5);
+    const SuperellipsoidGrain::Radii bounds = SuperellipsoidGrain::radii_of_curvature({s.a, s.b, s.c, s.e, s.n});
+    const RadiiOfCurvature<double> radii = radii_of_curvature(support_at(plain_form_of(s), own_axes, draw.direction()));
+    if (!(radii.sum < 1e100)) continue;
+    const double apart = std::sqrt(std::max(0.0, radii.sum * radii.sum - 4 * radii.product));
+    CAPTURE(k, s.e, s.n);
+    CHECK(2 * radii.product / (radii.sum + apart) > bounds.least * (1 - 1e-9));
+    if (k % 2 == 0) CHECK(0.5 * (radii.sum + apart) < bounds.largest * (1 + 1e-9));
+  }
 }
 
 TEST_CASE("forces and moments of two grains balance, and the work around any loop is none") {

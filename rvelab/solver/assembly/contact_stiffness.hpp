@@ -31,7 +31,10 @@ inline double hertz_radius_ratio(const Model& model, const PairTable& pairs, std
   if (!model.radius_from_curvature()) return 1;
   return at.hertz_radius_ratio(model.radius[std::size_t(pairs.i[p])], model.radius[std::size_t(pairs.j[p])]);
 }
-inline double hertz_radius_ratio(const Model&, const PairTable&, std::size_t, const SolidPlace&) { return 1; }
+inline double hertz_radius_ratio(const Model& model, const PairTable& pairs, std::size_t p, const SolidPlace& at) {
+  if (!model.radius_from_curvature()) return 1;
+  return radius_ratio_of(at.hertz_radius, model.radius[std::size_t(pairs.i[p])], model.radius[std::size_t(pairs.j[p])]);
+}
 /// The least and the largest that it can be, however the grains turn: tip to tip and flank to flank.
 struct RadiusRatios {
   double least = 1, largest = 1;
@@ -39,6 +42,16 @@ struct RadiusRatios {
 inline RadiusRatios hertz_radius_ratios(const Model& model, const PairTable& pairs, std::size_t p) {
   if (!model.radius_from_curvature()) return {};
   const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
+  if (moves_as_body(model.shape)) {
+    const auto radii = [&](std::size_t g) {
+      return SuperellipsoidGrain::radii_of_curvature(own_of<SuperellipsoidGrain>(model.own, g));
+    };
+    const auto at_i = radii(i), at_j = radii(j);
+    const auto ratio = [&](double ri, double rj) {
+      return radius_ratio_of(ri * rj / (ri + rj), model.radius[i], model.radius[j]);
+    };
+    return {ratio(at_i.least, at_j.least), ratio(at_i.largest, at_j.largest)};
+  }
   const Extent at_i = model.extent_of(i), at_j = model.extent_of(j);
   return {hertz_radius_ratio(model.radius[i], at_i.outer, model.radius[j], at_j.outer),
           hertz_radius_ratio(model.radius[i], at_i.inner, model.radius[j], at_j.inner)};

@@ -75,7 +75,7 @@ class PairPlaces : public PairGeometry<shape> {
       const double* row = places_.get() + place_row_length * p;
       const Branch b = this->branch(p);
       if constexpr (moves_as_body(shape))
-        return SolidPlace{b, b.length(), row[3], {row[0], row[1], row[2]}, {row[4], row[5], row[6]}};
+        return SolidPlace{b, b.length(), row[3], {row[0], row[1], row[2]}, {row[4], row[5], row[6]}, row[7]};
       else
         return OutlinePlace{b, b.length(), row[2], {row[0], row[1], 0}, row[3], row[4], row[5], row[6]};
     }

@@ -46,8 +46,9 @@ struct OutlinePlace {
 struct SolidPlace {
   Branch branch;
   double length, overlap;
-  Branch normal;  ///< of length 1
-  Branch point;   ///< m, contact point from the centre of i
+  Branch normal;            ///< of length 1
+  Branch point;             ///< m, contact point from the centre of i
+  double hertz_radius = 0;  ///< R*, m, where Hertz's radius is that of the curvature and the pair touches
 
   const Branch& along() const { return normal; }
   double along_length() const { return 1; }

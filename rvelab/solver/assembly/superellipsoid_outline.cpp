@@ -6,7 +6,7 @@
 
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/superellipsoid_rows.hpp"
-#include "rvelab/solver/kernels/superellipsoids.hpp"
+#include "rvelab/solver/kernels/superellipsoid_places.hpp"
 #include "rvelab/specimen/solids.hpp"
 
 namespace rvelab {
@@ -20,6 +20,15 @@ bool is_ellipsoid(const double* row) { return row[19] == 0 && row[20] == 0; }
 
 SolidPlace solid_place(const Branch& b, double overlap, const Triple<double>& n, const Triple<double>& at) {
   return {b, b.length(), overlap, {n.x, n.y, n.z}, {at.x, at.y, at.z}};
+}
+
+SolidPlace solid_place(const Branch& b, const OverlapPair& pair, const ContactsOf<double>& at) {
+  SolidPlace place = solid_place(b, at.overlap, at.n, at.point);
+  if (at.overlap > 0)
+    place.hertz_radius = hertz_radius(support_at(pair.form_i, pair.axes_i, at.n),
+                                      support_at(pair.form_j, pair.axes_j, times(-1.0, at.n)),
+                                      largest_radius(pair.form_i.half), largest_radius(pair.form_j.half));
+  return place;
 }
 
 /// The largest gap that the directions of a few steps show, m; it is enough to see `enough`.
@@ -85,14 +94,10 @@ SolidPlace Outline<Shape::superellipsoid>::place(const Branch& b, const double* 
     if (gap > 0) return solid_place(b, -gap, of_length_1(pair.branch), {0, 0, 0});
   }
   Triple<double> guess = {0, 0, 0};
-  if (!ellipsoids) {
-    const ContactsOf<double> at = contacts_of(pair, guess);
-    return solid_place(b, at.overlap, at.n, at.point);
-  }
+  if (!ellipsoids) return solid_place(b, pair, contacts_of(pair, guess));
   const EllipsoidPair<double> both = {ellipsoid_matrix(pair.form_i.half, pair.axes_i),
                                       ellipsoid_matrix(pair.form_j.half, pair.axes_j), pair.branch};
-  const ContactsOf<double> at = contacts_of(both, guess, [&](int) { return searched_contact(pair); });
-  return solid_place(b, at.overlap, at.n, at.point);
+  return solid_place(b, pair, contacts_of(both, guess, [&](int) { return searched_contact(pair); }));
 }
 
 template <>

@@ -46,7 +46,10 @@ inline __attribute__((always_inline)) void space_motion(const StepConstants& c, 
     V root = zero;
     if constexpr (Law::needs_root_overlap || T::Dashpot) {
       const V overlap = Shape::template overlap<V>(k, s);
-      root = square_root((overlap > 0.0) ? overlap : zero);
+      if constexpr (T::Curvature)
+        root = square_root((overlap > 0.0) ? overlap * Shape::template radius_ratio<V>(p, at, k, s) : zero);
+      else
+        root = square_root((overlap > 0.0) ? overlap : zero);
       store_as(s.root.at + k, root);
     }
     V mean_twist = zero;

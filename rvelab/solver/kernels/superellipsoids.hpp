@@ -1,6 +1,5 @@
-// The geometry of pairs of superellipsoids for the contact update in space (space.hpp): normal and overlap by
-// superellipsoid/lanes.hpp, of specimens of ellipsoids alone by superellipsoid/ellipsoids.hpp. The contact point halves
-// the line between the points of both, x_i from the centre of i and x_j = x_i - b from that of j.
+// The geometry of pairs of superellipsoids for the contact update in space (space.hpp), where they lie by
+// superellipsoid_places.hpp.
 //
 //   slip and opening: those of v + w_j x x_j - w_i x x_i,   T_i = -x_i x F,   T_j = x_j x F,   F the force on j
 //
@@ -9,244 +8,13 @@
 // work but their own.
 #pragma once
 
-#include "rvelab/solver/kernels/space.hpp"
-#include "rvelab/solver/kernels/spheres.hpp"
-#include "rvelab/superellipsoid/ellipsoids.hpp"
-#include "rvelab/superellipsoid/lanes.hpp"
+#include "rvelab/solver/kernels/superellipsoid_places.hpp"
 
 namespace rvelab {
 namespace {
 
-/// Form and axes from a grain row (grains/superellipsoid.hpp): its columns 12 to 23, and the rolling radius.
-template <class V>
-struct SuperellipsoidColumns {
-  V turn[4], half[4], rest[4], rolling;
-
-  SuperellipsoidForm<V> form() const {
-    // Rows that pad the lanes hold zeros: they are spheres of 1e-30 m.
-    return {{half[0] + 1e-30, half[1] + 1e-30, half[2] + 1e-30},
-            1.0 - half[3],
-            1.0 - rest[0],
-            rest[1] - 0.5,
-            rest[2] - 0.5,
-            rolling};
-  }
-  SuperellipsoidAxes<V> axes() const {
-    const V w = turn[0], x = turn[1], y = turn[2], z = turn[3];
-    const V xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
-    return {{1.0 - 2.0 * (yy + zz), 2.0 * (xy + wz), 2.0 * (xz - wy)},
-            {2.0 * (xy - wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz + wx)},
-            {2.0 * (xz + wy), 2.0 * (yz - wx), 1.0 - 2.0 * (xx + yy)}};
-  }
-};
-template <int W>
-inline __attribute__((always_inline)) SuperellipsoidColumns<typename Lanes<W>::V> columns_of_shapes(
-    const double* rows, const std::int32_t* row) {
-  SuperellipsoidColumns<typename Lanes<W>::V> c;
-  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 12; }, c.turn);
-  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 16; }, c.half);
-  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 20; }, c.rest);
-  c.rolling = Lanes<W>::collected([=](int lane) { return rows[row[lane] + 3]; });
-  return c;
-}
-
-/// From one row, for what looks at pairs one by one.
-inline SuperellipsoidColumns<double> shape_in_row(const double* row) {
-  const std::int32_t start = 0;
-  return columns_of_shapes<1>(row, &start);
-}
-
-template <int W>
-inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> superellipsoid_pair(
-    const StepConstants& c, const PairArrays& p, const double* rows, long at) {
-  using V = typename Lanes<W>::V;
-  const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
-  V d[4];
-  gather_differences<W>(rows, i, j, d);
-  const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, i), of_j = columns_of_shapes<W>(rows, j);
-  return {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch_of<V>(c, p, at, {d[0], d[1], d[2]})};
-}
-
-/// What the passes hand on.
-struct SuperellipsoidScratch : SpaceScratch {
-  ScratchColumn overlap;
-  TripleColumn branch, arm_i, arm_j;
-};
-
-template <int W, class V>
-inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch, const ContactsOf<V>& contacts, long k,
-                                                        SuperellipsoidScratch& s) {
-  const auto touch = contacts.overlap > 0.0;
-  const Triple<V> none = {V{}, V{}, V{}};
-  s.normal.store(k, contacts.n);
-  store_as(s.overlap.at + k, contacts.overlap);
-  s.arm_i.store(k, chosen(touch, contacts.point, none));
-  s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
-}
-
-/// Any W pairs of a chunk, by their numbers in it.
-template <int W>
-struct PairGroup {
-  long k[W];
-  std::int32_t i[W], j[W];
-
-  template <class At>
-  static PairGroup of(const PairArrays& p, long first, const At& at) {
-    PairGroup group;
-    for (int lane = 0; lane < W; ++lane) {
-      group.k[lane] = at(lane);
-      group.i[lane] = p.row_i[first + group.k[lane]];
-      group.j[lane] = p.row_j[first + group.k[lane]];
-    }
-    return group;
-  }
-  template <class V>
-  Triple<V> column(const TripleColumn& from) const {
-    using L = Lanes<W>;
-    return {L::collected([&](int lane) { return from.x.at[k[lane]]; }),
-            L::collected([&](int lane) { return from.y.at[k[lane]]; }),
-            L::collected([&](int lane) { return from.z.at[k[lane]]; })};
-  }
-  template <class V>
-  void put(const Triple<V>& value, TripleColumn& to) const {
-    for (int lane = 0; lane < W; ++lane) {
-      to.x.at[k[lane]] = in_lane(value.x, lane);
-      to.y.at[k[lane]] = in_lane(value.y, lane);
-      to.z.at[k[lane]] = in_lane(value.z, lane);
-    }
-  }
-};
-
-template <class V>
-inline __attribute__((always_inline)) EllipsoidPair<V> ellipsoids_of(const SuperellipsoidPair<V>& pair) {
-  return {ellipsoid_matrix(pair.form_i.half, pair.axes_i), ellipsoid_matrix(pair.form_j.half, pair.axes_j),
-          pair.branch};
-}
-template <class Pair, class Look>
-inline __attribute__((always_inline)) auto contacts_seen(const Pair& pair, const Look& look) {
-  auto contacts = contacts_by(pair, look.at);
-  contacts.overlap = look.apart ? contacts.overlap * 0.0 - 1.0 : contacts.overlap;
-  return contacts;
-}
-
-/// Numbers of pairs, from the lanes of a mask.
-struct PairNumbers {
-  long at[chunk_pairs], count = 0;
-
-  template <int W, class Mask, class Number>
-  inline __attribute__((always_inline)) void add(Mask held, const Number& number) {
-    if (!any_of(held)) return;
-    if constexpr (W == 1) {
-      at[count++] = number(0);
-    } else {
-      std::int64_t lanes[W];
-      std::memcpy(lanes, &held, sizeof(held));
-      for (int lane = 0; lane < W; ++lane)
-        if (lanes[lane] != 0) at[count++] = number(lane);
-    }
-  }
-};
-
-/// Branch, normal, overlap and arms, block by block. Not inlined: it is long, and the same for every law.
-template <int W>
-__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-    s.branch.store(k, pair.branch);
-    V row[4];
-    columns_of<W>(solid + 8 * k, 8, row);
-    Triple<V> guess = {row[0], row[1], row[2]};
-    put_contacts<W>(pair.branch, contacts_of(pair, guess), k, s);
-    const V next[4] = {guess.x, guess.y, guess.z, V{}};
-    rows_of<W>(next, solid + 8 * k, 8);
-  }
-}
-
-/// The same of ellipsoids. Each pair is looked at from its kept direction, and goes on in groups with others
-/// until it is done: one that is in its place costs one look, whatever those beside it do. The kept directions stand in
-/// rows of eight at `solid`. Not inlined: it is long, and the same for every law.
-template <int W>
-__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                long first, long count, double* solid, SuperellipsoidScratch& s) {
-  using V = typename Lanes<W>::V;
-  using Mask = decltype(V{} < 0.0);
-  PairNumbers open, left;
-  double decided[chunk_pairs];
-  for (long k = 0; k < count; k += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-    s.branch.store(k, pair.branch);
-    V row[4];
-    columns_of<W>(solid + 8 * k, 8, row);
-    Triple<V> place = {row[0], row[1], row[2]};
-    const Mask none = dot(place, place) < 0.25;
-    if (any_of(none)) place = chosen(none, Triple<V>{V{} + 1.0, V{}, V{}}, place);
-    Mask sure = V{} < 0.0;
-    const auto both = ellipsoids_of(pair);
-    const auto look = look_from(both, place, sure);
-    put_contacts<W>(pair.branch, contacts_seen(both, look), k, s);
-    const V next[4] = {place.x, place.y, place.z, V{}};
-    rows_of<W>(next, solid + 8 * k, 8);
-    store_as(decided + k, sure ? V{} + 1.0 : V{});
-    const Mask going = look.going & (!none), lost = (look.going & none) | (!(look.final | look.apart | look.going));
-    open.template add<W>(going, [=](int lane) { return k + lane; });
-    left.template add<W>(lost, [=](int lane) { return k + lane; });
-  }
-  if (open.count + left.count == 0) return;
-  const auto in_groups = [&](const PairNumbers& numbers, const auto& work) {
-    for (long from = 0; from < numbers.count; from += W) {
-      const auto at = [&](int lane) { return from + lane < numbers.count ? from + lane : from; };
-      const auto group = PairGroup<W>::of(p, first, [&](int lane) { return numbers.at[at(lane)]; });
-      const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, group.i),
-                                     of_j = columns_of_shapes<W>(rows, group.j);
-      const Triple<V> branch = group.template column<V>(s.branch);
-      const SuperellipsoidPair<V> pair = {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch};
-      V row[4];
-      ColumnsOf<W>::load([&](int lane) { return solid + 8 * group.k[lane]; }, row);
-      Triple<V> place = {row[0], row[1], row[2]};
-      const ContactsOf<V> contacts = work(group, pair, place, from);
-      for (int lane = 0; lane < W; ++lane) {
-        double* kept = solid + 8 * group.k[lane];
-        kept[0] = in_lane(place.x, lane), kept[1] = in_lane(place.y, lane), kept[2] = in_lane(place.z, lane);
-        s.overlap.at[group.k[lane]] = in_lane(contacts.overlap, lane);
-      }
-      const Mask touch = contacts.overlap > 0.0;
-      const Triple<V> zero = {V{}, V{}, V{}};
-      group.put(contacts.n, s.normal);
-      group.put(chosen(touch, contacts.point, zero), s.arm_i);
-      group.put(chosen(touch, plus(contacts.point, V{} - 1.0, branch), zero), s.arm_j);
-    }
-  };
-  for (int k = 0; k < steps_from_guess && open.count > 0; ++k) {
-    const PairNumbers now = open;
-    open.count = 0;
-    in_groups(now, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long from) {
-      Mask sure = Lanes<W>::collected([&](int lane) { return decided[group.k[lane]]; }) > 0.5;
-      const auto both = ellipsoids_of(pair);
-      const auto look = look_from(both, place, sure);
-      const V held = sure ? V{} + 1.0 : V{};
-      for (int lane = 0; lane < W; ++lane) decided[group.k[lane]] = in_lane(held, lane);
-      const long here = now.count - from;
-      const V number = Lanes<W>::collected([](int lane) { return double(lane); });
-      const Mask counts = number < double(here), going = look.going & counts,
-                 lost = (!(look.final | look.apart | look.going)) & counts;
-      open.template add<W>(going, [&](int lane) { return group.k[lane]; });
-      left.template add<W>(lost, [&](int lane) { return group.k[lane]; });
-      return contacts_seen(both, look);
-    });
-  }
-  for (long k = 0; k < open.count; ++k) left.at[left.count++] = open.at[k];
-  in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long) {
-    ContactsOf<V> contacts;
-    from_bodies(ellipsoids_of(pair), contacts, place,
-                [&](int lane) { return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane])); });
-    return contacts;
-  });
-}
-
-/// What PlaceKernel asks for: n, overlap, contact point from the centre of i.
-template <int W, bool Ellipsoids>
+/// What PlaceKernel asks for: n, overlap, contact point from the centre of i, R* with Curvature.
+template <int W, bool Ellipsoids, bool Curvature>
 void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, const double* rows, long begin, long end,
                                 double* places) {
   using V = typename Lanes<W>::V;
@@ -255,13 +23,12 @@ void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, con
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
     for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
-    if constexpr (Ellipsoids)
-      ellipsoid_places<W>(c, p, rows, first, count, guesses, s);
-    else
-      superellipsoid_places<W>(c, p, rows, first, count, guesses, s);
+    places_of<W, Ellipsoids, Curvature>(c, p, rows, first, count, guesses, s);
     for (long k = 0; k < count; k += W) {
       const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
-      const V near[4] = {n.x, n.y, n.z, load_as<V>(s.overlap.at + k)}, far[4] = {point.x, point.y, point.z, V{}};
+      V radius = {};
+      if constexpr (Curvature) radius = load_as<V>(s.radius.at + k);
+      const V near[4] = {n.x, n.y, n.z, load_as<V>(s.overlap.at + k)}, far[4] = {point.x, point.y, point.z, radius};
       rows_of<W>(near, places + place_row_length * (first + k), place_row_length);
       rows_of<W>(far, places + place_row_length * (first + k) + 4, place_row_length);
     }
@@ -277,10 +44,12 @@ struct SuperellipsoidPairs {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    if constexpr (Ellipsoids)
-      ellipsoid_places<T::W>(c, p, rows, first, count, p.solid + 8 * first, s);
-    else
-      superellipsoid_places<T::W>(c, p, rows, first, count, p.solid + 8 * first, s);
+    places_of<T::W, Ellipsoids, T::Curvature>(c, p, rows, first, count, p.solid + 8 * first, s);
+  }
+  /// R*/r*.
+  template <class V>
+  static inline __attribute__((always_inline)) V radius_ratio(const PairArrays& p, long at, long k, const Scratch& s) {
+    return radius_ratio_of(load_as<V>(s.radius.at + k), load_as<V>(p.radius_i + at), load_as<V>(p.radius_j + at));
   }
   template <class V>
   static inline __attribute__((always_inline)) V overlap(long k, const Scratch& s) {

@@ -1,0 +1,274 @@
+// Where pairs of superellipsoids lie: normal and overlap by superellipsoid/lanes.hpp, of specimens of ellipsoids alone
+// by superellipsoid/ellipsoids.hpp. The contact point halves the line between the points of both, x_i from the centre
+// of i and x_j = x_i - b from that of j.
+#pragma once
+
+#include "rvelab/contact/hertz_curvature.hpp"
+#include "rvelab/solver/kernels/space.hpp"
+#include "rvelab/solver/kernels/spheres.hpp"
+#include "rvelab/superellipsoid/ellipsoids.hpp"
+#include "rvelab/superellipsoid/lanes.hpp"
+
+namespace rvelab {
+namespace {
+
+/// Form and axes from a grain row (grains/superellipsoid.hpp): its columns 12 to 23, and the rolling radius.
+template <class V>
+struct SuperellipsoidColumns {
+  V turn[4], half[4], rest[4], rolling;
+
+  SuperellipsoidForm<V> form() const {
+    // Rows that pad the lanes hold zeros: they are spheres of 1e-30 m.
+    return {{half[0] + 1e-30, half[1] + 1e-30, half[2] + 1e-30},
+            1.0 - half[3],
+            1.0 - rest[0],
+            rest[1] - 0.5,
+            rest[2] - 0.5,
+            rolling};
+  }
+  SuperellipsoidAxes<V> axes() const {
+    const V w = turn[0], x = turn[1], y = turn[2], z = turn[3];
+    const V xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
+    return {{1.0 - 2.0 * (yy + zz), 2.0 * (xy + wz), 2.0 * (xz - wy)},
+            {2.0 * (xy - wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz + wx)},
+            {2.0 * (xz + wy), 2.0 * (yz - wx), 1.0 - 2.0 * (xx + yy)}};
+  }
+};
+template <int W>
+inline __attribute__((always_inline)) SuperellipsoidColumns<typename Lanes<W>::V> columns_of_shapes(
+    const double* rows, const std::int32_t* row) {
+  SuperellipsoidColumns<typename Lanes<W>::V> c;
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 12; }, c.turn);
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 16; }, c.half);
+  ColumnsOf<W>::load([=](int lane) { return rows + row[lane] + 20; }, c.rest);
+  c.rolling = Lanes<W>::collected([=](int lane) { return rows[row[lane] + 3]; });
+  return c;
+}
+
+/// From one row, for what looks at pairs one by one.
+inline SuperellipsoidColumns<double> shape_in_row(const double* row) {
+  const std::int32_t start = 0;
+  return columns_of_shapes<1>(row, &start);
+}
+
+template <int W>
+inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> superellipsoid_pair(
+    const StepConstants& c, const PairArrays& p, const double* rows, long at) {
+  using V = typename Lanes<W>::V;
+  const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
+  V d[4];
+  gather_differences<W>(rows, i, j, d);
+  const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, i), of_j = columns_of_shapes<W>(rows, j);
+  return {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch_of<V>(c, p, at, {d[0], d[1], d[2]})};
+}
+
+/// What the passes hand on.
+struct SuperellipsoidScratch : SpaceScratch {
+  ScratchColumn overlap, radius;  ///< radius: R*, where it is that of the curvature (contact/hertz_curvature.hpp)
+  TripleColumn branch, arm_i, arm_j;
+};
+
+template <int W, class V>
+inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch, const ContactsOf<V>& contacts, long k,
+                                                        SuperellipsoidScratch& s) {
+  const auto touch = contacts.overlap > 0.0;
+  const Triple<V> none = {V{}, V{}, V{}};
+  s.normal.store(k, contacts.n);
+  store_as(s.overlap.at + k, contacts.overlap);
+  s.arm_i.store(k, chosen(touch, contacts.point, none));
+  s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
+}
+
+/// Any W pairs of a chunk, by their numbers in it.
+template <int W>
+struct PairGroup {
+  long k[W];
+  std::int32_t i[W], j[W];
+
+  template <class At>
+  static PairGroup of(const PairArrays& p, long first, const At& at) {
+    PairGroup group;
+    for (int lane = 0; lane < W; ++lane) {
+      group.k[lane] = at(lane);
+      group.i[lane] = p.row_i[first + group.k[lane]];
+      group.j[lane] = p.row_j[first + group.k[lane]];
+    }
+    return group;
+  }
+  template <class V>
+  Triple<V> column(const TripleColumn& from) const {
+    using L = Lanes<W>;
+    return {L::collected([&](int lane) { return from.x.at[k[lane]]; }),
+            L::collected([&](int lane) { return from.y.at[k[lane]]; }),
+            L::collected([&](int lane) { return from.z.at[k[lane]]; })};
+  }
+  template <class V>
+  void put(const Triple<V>& value, TripleColumn& to) const {
+    for (int lane = 0; lane < W; ++lane) {
+      to.x.at[k[lane]] = in_lane(value.x, lane);
+      to.y.at[k[lane]] = in_lane(value.y, lane);
+      to.z.at[k[lane]] = in_lane(value.z, lane);
+    }
+  }
+};
+
+template <class V>
+inline __attribute__((always_inline)) EllipsoidPair<V> ellipsoids_of(const SuperellipsoidPair<V>& pair) {
+  return {ellipsoid_matrix(pair.form_i.half, pair.axes_i), ellipsoid_matrix(pair.form_j.half, pair.axes_j),
+          pair.branch};
+}
+template <class Pair, class Look>
+inline __attribute__((always_inline)) auto contacts_seen(const Pair& pair, const Look& look) {
+  auto contacts = contacts_by(pair, look.at);
+  contacts.overlap = look.apart ? contacts.overlap * 0.0 - 1.0 : contacts.overlap;
+  return contacts;
+}
+
+/// Numbers of pairs, from the lanes of a mask.
+struct PairNumbers {
+  long at[chunk_pairs], count = 0;
+
+  template <int W, class Mask, class Number>
+  inline __attribute__((always_inline)) void add(Mask held, const Number& number) {
+    if (!any_of(held)) return;
+    if constexpr (W == 1) {
+      at[count++] = number(0);
+    } else {
+      std::int64_t lanes[W];
+      std::memcpy(lanes, &held, sizeof(held));
+      for (int lane = 0; lane < W; ++lane)
+        if (lanes[lane] != 0) at[count++] = number(lane);
+    }
+  }
+};
+
+/// Branch, normal, overlap and arms, block by block. Not inlined: it is long, and the same for every law.
+template <int W>
+__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    s.branch.store(k, pair.branch);
+    V row[4];
+    columns_of<W>(solid + 8 * k, 8, row);
+    Triple<V> guess = {row[0], row[1], row[2]};
+    put_contacts<W>(pair.branch, contacts_of(pair, guess), k, s);
+    const V next[4] = {guess.x, guess.y, guess.z, V{}};
+    rows_of<W>(next, solid + 8 * k, 8);
+  }
+}
+
+/// The same of ellipsoids. Each pair is looked at from its kept direction, and goes on in groups with others
+/// until it is done: one that is in its place costs one look, whatever those beside it do. The kept directions stand in
+/// rows of eight at `solid`. Not inlined: it is long, and the same for every law.
+template <int W>
+__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                long first, long count, double* solid, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  using Mask = decltype(V{} < 0.0);
+  PairNumbers open, left;
+  double decided[chunk_pairs];
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    s.branch.store(k, pair.branch);
+    V row[4];
+    columns_of<W>(solid + 8 * k, 8, row);
+    Triple<V> place = {row[0], row[1], row[2]};
+    const Mask none = dot(place, place) < 0.25;
+    if (any_of(none)) place = chosen(none, Triple<V>{V{} + 1.0, V{}, V{}}, place);
+    Mask sure = V{} < 0.0;
+    const auto both = ellipsoids_of(pair);
+    const auto look = look_from(both, place, sure);
+    put_contacts<W>(pair.branch, contacts_seen(both, look), k, s);
+    const V next[4] = {place.x, place.y, place.z, V{}};
+    rows_of<W>(next, solid + 8 * k, 8);
+    store_as(decided + k, sure ? V{} + 1.0 : V{});
+    const Mask going = look.going & (!none), lost = (look.going & none) | (!(look.final | look.apart | look.going));
+    open.template add<W>(going, [=](int lane) { return k + lane; });
+    left.template add<W>(lost, [=](int lane) { return k + lane; });
+  }
+  if (open.count + left.count == 0) return;
+  const auto in_groups = [&](const PairNumbers& numbers, const auto& work) {
+    for (long from = 0; from < numbers.count; from += W) {
+      const auto at = [&](int lane) { return from + lane < numbers.count ? from + lane : from; };
+      const auto group = PairGroup<W>::of(p, first, [&](int lane) { return numbers.at[at(lane)]; });
+      const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, group.i),
+                                     of_j = columns_of_shapes<W>(rows, group.j);
+      const Triple<V> branch = group.template column<V>(s.branch);
+      const SuperellipsoidPair<V> pair = {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch};
+      V row[4];
+      ColumnsOf<W>::load([&](int lane) { return solid + 8 * group.k[lane]; }, row);
+      Triple<V> place = {row[0], row[1], row[2]};
+      const ContactsOf<V> contacts = work(group, pair, place, from);
+      for (int lane = 0; lane < W; ++lane) {
+        double* kept = solid + 8 * group.k[lane];
+        kept[0] = in_lane(place.x, lane), kept[1] = in_lane(place.y, lane), kept[2] = in_lane(place.z, lane);
+        s.overlap.at[group.k[lane]] = in_lane(contacts.overlap, lane);
+      }
+      const Mask touch = contacts.overlap > 0.0;
+      const Triple<V> zero = {V{}, V{}, V{}};
+      group.put(contacts.n, s.normal);
+      group.put(chosen(touch, contacts.point, zero), s.arm_i);
+      group.put(chosen(touch, plus(contacts.point, V{} - 1.0, branch), zero), s.arm_j);
+    }
+  };
+  for (int k = 0; k < steps_from_guess && open.count > 0; ++k) {
+    const PairNumbers now = open;
+    open.count = 0;
+    in_groups(now, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long from) {
+      Mask sure = Lanes<W>::collected([&](int lane) { return decided[group.k[lane]]; }) > 0.5;
+      const auto both = ellipsoids_of(pair);
+      const auto look = look_from(both, place, sure);
+      const V held = sure ? V{} + 1.0 : V{};
+      for (int lane = 0; lane < W; ++lane) decided[group.k[lane]] = in_lane(held, lane);
+      const long here = now.count - from;
+      const V number = Lanes<W>::collected([](int lane) { return double(lane); });
+      const Mask counts = number < double(here), going = look.going & counts,
+                 lost = (!(look.final | look.apart | look.going)) & counts;
+      open.template add<W>(going, [&](int lane) { return group.k[lane]; });
+      left.template add<W>(lost, [&](int lane) { return group.k[lane]; });
+      return contacts_seen(both, look);
+    });
+  }
+  for (long k = 0; k < open.count; ++k) left.at[left.count++] = open.at[k];
+  in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long) {
+    ContactsOf<V> contacts;
+    from_bodies(ellipsoids_of(pair), contacts, place,
+                [&](int lane) { return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane])); });
+    return contacts;
+  });
+}
+
+/// R* by the normals that were found, 0 where pairs are apart: a pass of its own, so that others pay nothing for it.
+template <int W, bool Ellipsoids>
+__attribute__((noinline)) void hertz_radii(const StepConstants& c, const PairArrays& p, const double* rows, long first,
+                                           long count, SuperellipsoidScratch& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
+    const Triple<V> n = s.normal.load<V>(k);
+    V radius;
+    if constexpr (Ellipsoids)
+      radius = hertz_radius(ellipsoids_of(pair), n);
+    else
+      radius = hertz_radius(support_at(pair.form_i, pair.axes_i, n),
+                            support_at(pair.form_j, pair.axes_j, times(V{} - 1.0, n)), largest_radius(pair.form_i.half),
+                            largest_radius(pair.form_j.half));
+    store_as(s.radius.at + k, (load_as<V>(s.overlap.at + k) > 0.0) ? radius : V{});
+  }
+}
+
+/// What the kernels ask for: places, and R* where it is that of the curvature.
+template <int W, bool Ellipsoids, bool Curvature>
+inline __attribute__((always_inline)) void places_of(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
+  if constexpr (Ellipsoids)
+    ellipsoid_places<W>(c, p, rows, first, count, solid, s);
+  else
+    superellipsoid_places<W>(c, p, rows, first, count, solid, s);
+  if constexpr (Curvature) hertz_radii<W, Ellipsoids>(c, p, rows, first, count, s);
+}
+
+}  // namespace
+}  // namespace rvelab
