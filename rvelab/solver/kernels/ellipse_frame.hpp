@@ -16,7 +16,7 @@
 namespace rvelab {
 namespace {
 
-/// x.M x, w.M x and w.M w, m^4.
+/// x.M x, -w.M x and w.M w, m^4.
 template <class V>
 struct SquaredSupport {
   V along, mixed, across;
@@ -33,7 +33,7 @@ inline __attribute__((always_inline)) SquaredSupport<V> squared_support(const El
                                                                         V squared) {
   const V mx = m.xx * x + m.xy * y, my = m.xy * x + m.yy * y;
   const V along = x * mx + y * my;
-  return {along, x * my - y * mx, (m.xx + m.yy) * squared - along};
+  return {along, y * mx - x * my, (m.xx + m.yy) * squared - along};
 }
 template <class V>
 inline __attribute__((always_inline)) BranchFrame<V> branch_frame(const EllipsePair<V>& p) {
@@ -44,13 +44,13 @@ inline __attribute__((always_inline)) BranchFrame<V> branch_frame(const EllipseP
 /// H^2.
 template <class V>
 inline __attribute__((always_inline)) V squared_along(const SquaredSupport<V>& s, V t) {
-  return s.along + t * (s.mixed + (s.mixed + t * s.across));
+  return s.along + t * ((t * s.across - s.mixed) - s.mixed);
 }
 
 /// Where both ellipses, weighed, are stationary.
 template <class V>
 inline __attribute__((always_inline)) V weighed_tangent(const BranchFrame<V>& f, V of_i, V of_j) {
-  return (of_i * f.i.mixed + of_j * f.j.mixed) / -(of_i * f.i.across + of_j * f.j.across);
+  return (of_i * f.i.mixed + of_j * f.j.mixed) / (of_i * f.i.across + of_j * f.j.across);
 }
 /// Where to begin: 1/H_i : 1/H_j is (3 H_j^2 + H_i^2) : (3 H_i^2 + H_j^2) to 2 % along the branch of ellipses of which
 /// one is twice as large, then (H_j^2 + g) : (H_i^2 + g), g = H_i H_j to 2e-3.
@@ -81,9 +81,9 @@ struct TangentStep {
 /// next_direction. Below, all is times |x| sqrt(1 + t^2).
 template <class V>
 inline __attribute__((always_inline)) TangentStep<V> tangent_step(const BranchFrame<V>& f, V t) {
-  const V slant_i = f.i.mixed + t * f.i.across, slant_j = f.j.mixed + t * f.j.across;
-  const V H_i = square_root(f.i.along + t * (f.i.mixed + slant_i));
-  const V H_j = square_root(f.j.along + t * (f.j.mixed + slant_j));
+  const V slant_i = t * f.i.across - f.i.mixed, slant_j = t * f.j.across - f.j.mixed;
+  const V H_i = square_root(f.i.along + t * (slant_i - f.i.mixed));
+  const V H_j = square_root(f.j.along + t * (slant_j - f.j.mixed));
   const V both = 1.0 / (H_i * H_j);
   const V inverse_i = H_j * both, inverse_j = H_i * both;
   const V rate_i = slant_i * inverse_i, rate_j = slant_j * inverse_j;  // dH/dt
@@ -119,8 +119,8 @@ struct EllipsePlace {
 
 template <class V>
 inline __attribute__((always_inline)) EllipsePlace<V> place_along(const BranchFrame<V>& f, V x, V y, V t) {
-  const V slant_i = f.i.mixed + t * f.i.across, slant_j = f.j.mixed + t * f.j.across;
-  const V straight_i = f.i.along + t * f.i.mixed, straight_j = f.j.along + t * f.j.mixed;
+  const V slant_i = t * f.i.across - f.i.mixed, slant_j = t * f.j.across - f.j.mixed;
+  const V straight_i = f.i.along - t * f.i.mixed, straight_j = f.j.along - t * f.j.mixed;
   const V H_i = square_root(straight_i + t * slant_i), H_j = square_root(straight_j + t * slant_j);
   const V length = square_root(f.squared + (t * t) * f.squared);
   const V product = H_i * H_j, both = 1.0 / (product * length), inverse = product * both;
@@ -158,12 +158,12 @@ inline __attribute__((always_inline)) void step_open_lanes(const BranchFrame<V>&
 
 /// One step more for the lanes that the last one did not settle. What is still open has an infinite f, for the search.
 template <class V>
-__attribute__((noinline)) void settle(const BranchFrame<V>& f, V x, V y, V t, MaskOf<V> settled,
-                                      EllipsePlace<V>& place) {
+__attribute__((noinline)) EllipsePlace<V> settled_place(const BranchFrame<V>& f, V x, V y, V t, MaskOf<V> settled) {
   const TangentStep<V> step = tangent_step(f, t);
   const V infinite = V{} + __builtin_inf();
-  place = place_along(f, x, y, settled ? t : step.next);
+  EllipsePlace<V> place = place_along(f, x, y, settled ? t : step.next);
   place.overlap = (settled | is_settled(place, step.curvature)) ? place.overlap : infinite;
+  return place;
 }
 
 }  // namespace

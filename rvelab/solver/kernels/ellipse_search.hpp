@@ -159,7 +159,7 @@ __attribute__((noinline)) void search_lanes(Mask open, const EllipsePair<V>& p, 
 
 /// Leaves to the search what the steps did not end or what is too deep for them.
 template <class Mask, class V>
-__attribute__((noinline)) void search_where(Mask deep, const EllipsePair<V>& p, EllipsePlace<V>& place) {
+__attribute__((noinline)) EllipsePlace<V> searched_where(Mask deep, const EllipsePair<V>& p, EllipsePlace<V> place) {
   search_lanes(deep, p, place.n);
   const EllipseGap<V> found = ellipse_gap(p, place.n);
   place.support_i = deep ? found.support_i : place.support_i;
@@ -168,6 +168,7 @@ __attribute__((noinline)) void search_where(Mask deep, const EllipsePair<V>& p, 
   place.turned_j = deep ? found.turned_j : place.turned_j;
   place.overlap = deep ? found.overlap : place.overlap;
   place.slope = deep ? found.slope : place.slope;
+  return place;
 }
 
 /// Where two ellipses are closest. Where f < 0 they are apart, and n is a direction that shows it.
@@ -181,9 +182,9 @@ inline EllipsePlace<V> closest_place(const EllipsePair<V>& p) {
   t = ended ? t : V{} + __builtin_nan("");
   EllipsePlace<V> place = place_along(frame, p.x, p.y, t);
   const MaskOf<V> settled = is_settled(place, curvature);
-  if (any_of(!settled)) settle(frame, p.x, p.y, t, settled, place);
+  if (any_of(!settled)) place = settled_place(frame, p.x, p.y, t, settled);
   const MaskOf<V> deep = !is_shallow(p, place.overlap);
-  if (any_of(deep)) search_where(deep, p, place);
+  if (any_of(deep)) place = searched_where(deep, p, place);
   return place;
 }
 

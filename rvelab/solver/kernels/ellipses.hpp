@@ -50,9 +50,9 @@ inline __attribute__((always_inline)) BranchFrame<V> frame_in(const EllipseScrat
 }
 
 template <class V, int W>
-inline __attribute__((always_inline)) EllipseMatrix<V> matrix_of(const double* rows, const std::int32_t* grain) {
+inline __attribute__((always_inline)) EllipseMatrix<V> matrix_of(const typename Lanes<W>::Quad* quads) {
   V m[4];
-  ColumnsOf<W>::load([=](int lane) { return rows + grain[lane] + 8; }, m);
+  Lanes<W>::transpose(quads, m);
   return matrix_from(m[0], m[1], m[2], m[3]);
 }
 
@@ -61,26 +61,32 @@ template <class T>
 inline __attribute__((always_inline)) void ellipse_rows(const StepConstants& c, const PairArrays& p, const double* rows,
                                                         long first, long count, EllipseScratch& s) {
   constexpr int W = T::W;
-  using V = typename Lanes<W>::V;
+  using L = Lanes<W>;
+  using V = typename L::V;
+  using Quad = typename L::Quad;
   for (long k = 0; k < count; k += W) {
     const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
-    EllipsePair<V> pair;
-    {
-      V d[4];
-      gather_differences<W>(rows, i, j, d);
-      pair.x = d[0], pair.y = d[1];
-      add_image_in_plane(c, p, first + k, pair.x, pair.y);
-      store_as(s.dx.at + k, pair.x);
-      store_as(s.dy.at + k, pair.y);
+    Quad difference[W], of_i[W], of_j[W];
+    for (int lane = 0; lane < W; ++lane) {
+      const double *const row_i = rows + i[lane], *const row_j = rows + j[lane];
+      difference[lane] = L::sub(quad_at<W>(row_j), quad_at<W>(row_i));
+      of_i[lane] = quad_at<W>(row_i + 8);
+      of_j[lane] = quad_at<W>(row_j + 8);
       if constexpr (T::Advance || T::Dashpot) {
-        store_as(s.du.at + k, d[2]);
-        store_as(s.dv.at + k, d[3]);
-        store_as(s.spin_i.at + k, gather_spins<W>(rows, i));
-        store_as(s.spin_j.at + k, gather_spins<W>(rows, j));
+        s.spin_i.at[k + lane] = row_i[4];
+        s.spin_j.at[k + lane] = row_j[4];
       }
     }
-    pair.i = matrix_of<V, W>(rows, i);
-    pair.j = matrix_of<V, W>(rows, j);
+    V d[4];
+    L::transpose(difference, d);
+    if constexpr (T::Advance || T::Dashpot) {
+      store_as(s.du.at + k, d[2]);
+      store_as(s.dv.at + k, d[3]);
+    }
+    EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+    add_image_in_plane(c, p, first + k, pair.x, pair.y);
+    store_as(s.dx.at + k, pair.x);
+    store_as(s.dy.at + k, pair.y);
     const BranchFrame<V> frame = branch_frame(pair);
     store_as(s.squared.at + k, frame.squared);
     put_form(s.form_i, k, frame.i);
@@ -136,13 +142,18 @@ inline __attribute__((always_inline)) void ellipse_directions(long count, Ellips
 
 /// Deep pairs, from their grain rows.
 template <int W, class V>
-__attribute__((noinline)) void search_block(const StepConstants& c, const PairArrays& p, const double* rows, long at,
-                                            EllipsePlace<V>& place) {
+__attribute__((noinline)) EllipsePlace<V> searched_block(const StepConstants& c, const PairArrays& p, const double* rows, long at,
+                                                      const EllipsePlace<V>& place) {
   V d[2];
   gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
   add_image_in_plane(c, p, at, d[0], d[1]);
-  const EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(rows, p.row_i + at), matrix_of<V, W>(rows, p.row_j + at)};
-  search_where(!is_shallow(pair, place.overlap), pair, place);
+  typename Lanes<W>::Quad of_i[W], of_j[W];
+  for (int lane = 0; lane < W; ++lane) {
+    of_i[lane] = quad_at<W>(rows + p.row_i[at + lane] + 8);
+    of_j[lane] = quad_at<W>(rows + p.row_j[at + lane] + 8);
+  }
+  const EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+  return searched_where(!is_shallow(pair, place.overlap), pair, place);
 }
 
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
@@ -157,8 +168,9 @@ __attribute__((noinline)) void ellipse_places(const StepConstants& c, const Pair
     const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k), t = load_as<V>(s.tangent.at + k);
     EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, t);
     const MaskOf<V> settled = is_settled(place, load_as<V>(s.curvature.at + k));
-    if (any_of(!settled)) settle(frame_in<V>(s, k), x, y, t, settled, place);
-    if (any_of(!(place.overlap <= load_as<V>(s.deepest.at + k)))) search_block<T::W>(c, p, rows, first + k, place);
+    if (any_of(!settled)) place = settled_place(frame_in<V>(s, k), x, y, t, settled);
+    if (any_of(!(place.overlap <= load_as<V>(s.deepest.at + k)))) 
+      place = searched_block<T::W>(c, p, rows, first + k, place);
     const V half_slope = 0.5 * place.slope;
     store_as(s.nx.at + k, place.n.x);
     store_as(s.ny.at + k, place.n.y);
