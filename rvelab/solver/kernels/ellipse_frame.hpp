@@ -141,9 +141,9 @@ inline __attribute__((always_inline)) EllipsePlace<V> place_along(const BranchFr
 /// two are apart.
 template <class V>
 inline __attribute__((always_inline)) MaskOf<V> is_settled(const EllipsePlace<V>& place, V curvature) {
-  const V heights = place.support_i + place.support_j, bend = curvature * place.inverse;
-  return (magnitude_of(place.slope) <= 1e-10 * ((bend < heights) ? bend : heights)) |
-         (place.overlap < -1e-12 * heights);
+  const V of_heights = 1e-10 * (place.support_i + place.support_j), of_bend = 1e-10 * (curvature * place.inverse);
+  return (magnitude_of(place.slope) <= ((of_bend < of_heights) ? of_bend : of_heights)) |
+         (place.overlap < -of_heights);
 }
 
 /// A step of the lanes that have not ended.
@@ -151,7 +151,7 @@ template <class V>
 inline __attribute__((always_inline)) void step_open_lanes(const BranchFrame<V>& f, V& t, V& curvature,
                                                            MaskOf<V>& ended) {
   const TangentStep<V> step = tangent_step(f, t);
-  t = (ended | step.apart) ? t : step.next;
+  t = (ended | (step.apart & !step.near)) ? t : step.next;
   curvature = ended ? curvature : step.curvature;
   ended = ended | step.near | step.apart;
 }

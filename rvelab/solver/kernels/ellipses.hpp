@@ -101,12 +101,15 @@ template <class V>
 inline __attribute__((always_inline)) bool first_step(EllipseScratch& s, long k) {
   const V t = load_as<V>(s.tangent.at + k);
   const TangentStep<V> step = tangent_step(frame_in<V>(s, k), t);
-  const MaskOf<V> ended = step.near | step.apart;
-  store_as(s.tangent.at + k, step.apart ? t : step.next);
   store_as(s.curvature.at + k, step.curvature);
-  if (!any_of(!ended)) return false;
+  if (!any_of(!step.near)) {
+    store_as(s.tangent.at + k, step.next);
+    return false;
+  }
+  const MaskOf<V> ended = step.near | step.apart;
+  store_as(s.tangent.at + k, (step.apart & !step.near) ? t : step.next);
   store_as(s.ended.at + k, ended ? V{} + 1.0 : V{});
-  return true;
+  return any_of(!ended);
 }
 template <class V>
 __attribute__((noinline)) bool further_step(EllipseScratch& s, long k, bool last) {
@@ -140,20 +143,49 @@ inline __attribute__((always_inline)) void ellipse_directions(long count, Ellips
   }
 }
 
-/// Deep pairs, from their grain rows.
-template <int W, class V>
-__attribute__((noinline)) EllipsePlace<V> searched_block(const StepConstants& c, const PairArrays& p, const double* rows, long at,
-                                                      const EllipsePlace<V>& place) {
-  V d[2];
-  gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
-  add_image_in_plane(c, p, at, d[0], d[1]);
+/// The pair along its direction, to columns, with the motion of the centres.
+template <class T, class V>
+inline __attribute__((always_inline)) void put_place(const StepConstants& c, const EllipsePlace<V>& place, V x, V y,
+                                                     long k, EllipseScratch& s) {
+  const V half_slope = 0.5 * place.slope;
+  store_as(s.nx.at + k, place.n.x);
+  store_as(s.ny.at + k, place.n.y);
+  store_as(s.overlap.at + k, place.overlap);
+  store_as(s.reach_i.at + k, place.support_i);
+  store_as(s.reach_j.at + k, place.support_j);
+  store_as(s.turn_i.at + k, place.turned_i - half_slope);
+  store_as(s.turn_j.at + k, place.turned_j - half_slope);
+  if constexpr (T::Advance || T::Dashpot) {
+    const double half_dt = 0.5 * c.dt;
+    const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
+    const V px = x - half_dt * du, py = y - half_dt * dv;
+    const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
+    store_as(s.along.at + k, place.n.x * vy - place.n.y * vx);
+    if constexpr (T::Dashpot) store_as(s.opening.at + k, place.n.x * vx + place.n.y * vy);
+  }
+}
+
+/// The same of pairs that take a step more or are too deep for steps. Seldom, and so not inlined.
+template <class T>
+__attribute__((noinline)) void put_far_place(const StepConstants& c, const PairArrays& p, const double* rows,
+                                             long first, long k, EllipseScratch& s) {
+  constexpr int W = T::W;
+  using V = typename Lanes<W>::V;
+  const long at = first + k;
+  const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k), t = load_as<V>(s.tangent.at + k);
+  const BranchFrame<V> frame = frame_in<V>(s, k);
+  EllipsePlace<V> place = place_along(frame, x, y, t);
+  const MaskOf<V> settled = is_settled(place, load_as<V>(s.curvature.at + k));
+  if (any_of(!settled)) place = settled_place(frame, x, y, t, settled);
   typename Lanes<W>::Quad of_i[W], of_j[W];
   for (int lane = 0; lane < W; ++lane) {
     of_i[lane] = quad_at<W>(rows + p.row_i[at + lane] + 8);
     of_j[lane] = quad_at<W>(rows + p.row_j[at + lane] + 8);
   }
-  const EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
-  return searched_where(!is_shallow(pair, place.overlap), pair, place);
+  const EllipsePair<V> pair = {x, y, matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+  const MaskOf<V> deep = !is_shallow(pair, place.overlap);
+  if (any_of(deep)) place = searched_where(deep, pair, place);
+  put_place<T>(c, place, x, y, k, s);
 }
 
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
@@ -161,31 +193,15 @@ template <class T>
 __attribute__((noinline)) void ellipse_places(const StepConstants& c, const PairArrays& p, const double* rows,
                                               long first, long count, EllipseScratch& s) {
   using V = typename Lanes<T::W>::V;
-  const double half_dt = 0.5 * c.dt;
   ellipse_rows<T>(c, p, rows, first, count, s);
   ellipse_directions<T>(count, s);
   for (long k = 0; k < count; k += T::W) {
-    const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k), t = load_as<V>(s.tangent.at + k);
-    EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, t);
-    const MaskOf<V> settled = is_settled(place, load_as<V>(s.curvature.at + k));
-    if (any_of(!settled)) place = settled_place(frame_in<V>(s, k), x, y, t, settled);
-    if (any_of(!(place.overlap <= load_as<V>(s.deepest.at + k)))) 
-      place = searched_block<T::W>(c, p, rows, first + k, place);
-    const V half_slope = 0.5 * place.slope;
-    store_as(s.nx.at + k, place.n.x);
-    store_as(s.ny.at + k, place.n.y);
-    store_as(s.overlap.at + k, place.overlap);
-    store_as(s.reach_i.at + k, place.support_i);
-    store_as(s.reach_j.at + k, place.support_j);
-    store_as(s.turn_i.at + k, place.turned_i - half_slope);
-    store_as(s.turn_j.at + k, place.turned_j - half_slope);
-    if constexpr (T::Advance || T::Dashpot) {
-      const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
-      const V px = x - half_dt * du, py = y - half_dt * dv;
-      const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
-      store_as(s.along.at + k, place.n.x * vy - place.n.y * vx);
-      if constexpr (T::Dashpot) store_as(s.opening.at + k, place.n.x * vx + place.n.y * vy);
-    }
+    const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k);
+    const EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, load_as<V>(s.tangent.at + k));
+    put_place<T>(c, place, x, y, k, s);
+    const MaskOf<V> found = is_settled(place, load_as<V>(s.curvature.at + k)) &
+                            (place.overlap <= load_as<V>(s.deepest.at + k));
+    if (any_of(!found)) put_far_place<T>(c, p, rows, first, k, s);
   }
 }
 
@@ -221,34 +237,27 @@ struct EllipseRows {
   static constexpr int length = Ellipse::row_length;
   static constexpr bool turns = true;
 
-  /// `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
-  template <class T, class Fastest>
+  /// Of W grains from `first` on, which move with u, v, w. `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
+  template <int W, class V>
   static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first,
-                                                         long count, const DiscColumns& s, Fastest& fastest) {
-    constexpr int W = T::W;
-    using V = typename Lanes<W>::V;
-    const double half_dt = 0.5 * c.dt, cell_spin = c.spin[2];
-    for (long k = 0; k < count; k += W) {
-      double* row = g.rows + length * (first + k);
-      V a[4];
-      columns_of<W>(row + 4, length, a);
-      const V x = a[1], y = a[2], axes_gap = a[3];
-      const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
-      const V w = load_as<V>(s.w.at + k) + cell_spin, u = load_as<V>(s.u.at + k), v = load_as<V>(s.v.at + k);
-      const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(w), squared = speed * speed;
-      fastest = (squared > fastest) ? squared : fastest;
-      const V q = half_dt * w;
-      const V inverse = 1.0 / (1.0 + q * q), cosine = (1.0 - q * q) * inverse, sine = (q + q) * inverse;
-      const V tx = cosine * x - sine * y, ty = cosine * y + sine * x;
-      const V shorter = 1.5 - 0.5 * (tx * tx + ty * ty);
-      const Direction<V> e = {tx * shorter, ty * shorter};
-      const V minor = load_as<V>(g.turn_first + first + k), difference = load_as<V>(g.turn_second + first + k);
-      const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, sharpest);
-      const V spin_and_axis[4] = {load_as<V>(s.w.at + k), e.x, e.y, axes_gap},
-              matrix[4] = {m.xx, m.xy, m.yy, m.sharpest};
-      rows_of<W>(spin_and_axis, row + 4, length);
-      rows_of<W>(matrix, row + 8, length);
-    }
+                                                         V u, V v, V w, const V (&a)[4], V& fastest) {
+    double* row = g.rows + length * first;
+    const double half_dt = 0.5 * c.dt;
+    const V x = a[1], y = a[2], axes_gap = a[3];
+    const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
+    const V spin = w + c.spin[2];
+    const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(spin), squared = speed * speed;
+    fastest = (squared > fastest) ? squared : fastest;
+    const V q = half_dt * spin;
+    const V inverse = 1.0 / (1.0 + q * q), cosine = (1.0 - q * q) * inverse, sine = (q + q) * inverse;
+    const V tx = cosine * x - sine * y, ty = cosine * y + sine * x;
+    const V shorter = 1.5 - 0.5 * (tx * tx + ty * ty);
+    const Direction<V> e = {tx * shorter, ty * shorter};
+    const V minor = load_as<V>(g.turn_first + first), difference = load_as<V>(g.turn_second + first);
+    const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, sharpest);
+    const V spin_and_axis[4] = {w, e.x, e.y, axes_gap}, matrix[4] = {m.xx, m.xy, m.yy, m.sharpest};
+    rows_of<W>(spin_and_axis, row + 4, length);
+    rows_of<W>(matrix, row + 8, length);
   }
 };
 
