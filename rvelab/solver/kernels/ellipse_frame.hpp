@@ -1,13 +1,13 @@
-// The least f of two ellipses (ellipse_overlap.hpp) over lanes, in the frame of their branch x and w, x turned by a right
-// angle. A direction is x + t w, t the tangent of its angle from the branch; of length 1 it is only in the end. Along it
-// |x| sqrt(1 + t^2) h is H = sqrt(x.M x + 2 t w.M x + t^2 w.M w), so that each direction after the first costs five
-// operations and a root an ellipse.
+// The least f of two ellipses (ellipse_overlap.hpp) over lanes, in the frame of their branch x and w, x turned by a
+// right angle. A direction is x + t w, t the tangent of its angle from the branch; of length 1 it is only in the end.
+// Along it |x| sqrt(1 + t^2) h is H = sqrt(x.M x + 2 t w.M x + t^2 w.M w), so that each direction after the first costs
+// five operations and a root an ellipse.
 //
 // Where f is stationary (M_i/H_i + M_j/H_j - c) (x + t w) = x, c = (H_i + H_j - x.x)/(x.x (1 + t^2)). The first
-// direction is two steps of t <- -(w_i w.M_i x + w_j w.M_j x)/(w_i w.M_i w + w_j w.M_j w), without the small c, in which
-// w_i : w_j = 1/H_i : 1/H_j need not be exact: a sub-step's own positions give it, to 1e-4 at aspect 0.743. Halley's
-// step takes the tangent of the turn: it is exact for two circles. It leads to 1e-12, where f is evaluated; a slope that
-// is left there, above 1e-10 of f'', takes one step more.
+// direction is two steps of t <- -(w_i w.M_i x + w_j w.M_j x)/(w_i w.M_i w + w_j w.M_j w), without the small c, in
+// which w_i : w_j = 1/H_i : 1/H_j need not be exact: a sub-step's own positions give it, to 1e-4 at aspect 0.743.
+// Halley's step takes the tangent of the turn: it is exact for two circles. It leads to 1e-12, where f is evaluated; a
+// slope that is left there, above 1e-10 of f'', takes one step more.
 #pragma once
 
 #include "rvelab/lanes/powers.hpp"
@@ -71,8 +71,8 @@ using MaskOf = decltype(V{} < V{});
 /// What is seen along a direction.
 template <class V>
 struct TangentStep {
-  V next;       ///< t after Halley's step
-  V curvature;  ///< f'' times |x| sqrt(1 + t^2), m^2
+  V next;          ///< t after Halley's step
+  V curvature;     ///< f'' times |x| sqrt(1 + t^2), m^2
   MaskOf<V> near;  ///< the step is so short that it is the last, or the last but one
   MaskOf<V> apart;
 };
@@ -93,16 +93,15 @@ inline __attribute__((always_inline)) TangentStep<V> tangent_step(const BranchFr
   const V bend_j = (f.j.along * f.j.across - f.j.mixed * f.j.mixed) * (inverse_j * (inverse_j * inverse_j));
   const V bend = bend_i + bend_j, squared_spread = spread * spread;
   const V curvature = squared_spread * bend - overlap;
-  const V skew =
-      squared_spread * (spread * (bend_i * (rate_i * inverse_i) + bend_j * (rate_j * inverse_j)) - t * bend);
-  V part = slope * curvature, whole = curvature * curvature + slope * (1.5 * skew);
-  const MaskOf<V> convex = curvature > 0.0;
-  const MaskOf<V> near = convex & (magnitude_of(part) <= 1e-3 * whole);
+  const V skew = squared_spread * (spread * (bend_i * (rate_i * inverse_i) + bend_j * (rate_j * inverse_j)) - t * bend);
+  const V square = curvature * curvature, bent = slope * (1.5 * skew);
+  V part = slope * curvature, whole = square + bent;
+  const MaskOf<V> near = (magnitude_of(slope) <= 1e-3 * ((curvature < heights) ? curvature : heights)) &
+                         (magnitude_of(bent) <= 3e-4 * square);
   const MaskOf<V> apart = overlap < -2e-12 * heights;
-  if (any_of(!(near | apart))) {
-    const V steep = magnitude_of(curvature);
-    const MaskOf<V> halley = convex & (whole > 0.5 * (curvature * curvature));
-    whole = halley ? whole : steep;
+  if (any_of(!near)) {
+    const MaskOf<V> halley = (curvature > 0.0) & (whole > 0.5 * square);
+    whole = halley ? whole : magnitude_of(curvature);
     part = clamped(halley ? part : slope, 0.53 * whole);
   }
   const V next = (t * whole - part) / (whole + t * part);
@@ -137,13 +136,12 @@ inline __attribute__((always_inline)) EllipsePlace<V> place_along(const BranchFr
   return place;
 }
 
-/// Whether the place is the least, to a turn of 1e-10 by the curvature before the step that led to it, or shows that the
-/// two are apart.
+/// Whether the place is the least, to a turn of 1e-10 by the curvature before the step that led to it, or shows that
+/// the two are apart.
 template <class V>
 inline __attribute__((always_inline)) MaskOf<V> is_settled(const EllipsePlace<V>& place, V curvature) {
   const V of_heights = 1e-10 * (place.support_i + place.support_j), of_bend = 1e-10 * (curvature * place.inverse);
-  return (magnitude_of(place.slope) <= ((of_bend < of_heights) ? of_bend : of_heights)) |
-         (place.overlap < -of_heights);
+  return (magnitude_of(place.slope) <= ((of_bend < of_heights) ? of_bend : of_heights)) | (place.overlap < -of_heights);
 }
 
 /// A step of the lanes that have not ended.

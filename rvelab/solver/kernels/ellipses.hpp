@@ -199,8 +199,8 @@ __attribute__((noinline)) void ellipse_places(const StepConstants& c, const Pair
     const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k);
     const EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, load_as<V>(s.tangent.at + k));
     put_place<T>(c, place, x, y, k, s);
-    const MaskOf<V> found = is_settled(place, load_as<V>(s.curvature.at + k)) &
-                            (place.overlap <= load_as<V>(s.deepest.at + k));
+    const MaskOf<V> found =
+        is_settled(place, load_as<V>(s.curvature.at + k)) & (place.overlap <= load_as<V>(s.deepest.at + k));
     if (any_of(!found)) put_far_place<T>(c, p, rows, first, k, s);
   }
 }
@@ -239,8 +239,8 @@ struct EllipseRows {
 
   /// Of W grains from `first` on, which move with u, v, w. `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
   template <int W, class V>
-  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first,
-                                                         V u, V v, V w, const V (&a)[4], V& fastest) {
+  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first, V u,
+                                                         V v, V w, const V (&a)[4], V& fastest) {
     double* row = g.rows + length * first;
     const double half_dt = 0.5 * c.dt;
     const V x = a[1], y = a[2], axes_gap = a[3];
