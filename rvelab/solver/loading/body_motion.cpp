@@ -78,9 +78,12 @@ void BodySweep::set_step(const StepConstants& c, const Matrix3& inverse_stretch,
 void BodySweep::move(const StepConstants& c, const GrainArrays& grains, const PairArrays& pairs, Assembly& assembly,
                      StepSums& sums) {
   BodyMotions& bodies = assembly.bodies;
-  sweep_bodies(model_.kernels_at(assembly.state.last_step.loading), at_rate_, c, constants_, grains, pairs,
-               arrays_of_bodies(*model_.bodies, assembly), long(bodies.motion.size()), long(assembly.mass.size()),
-               model_.sharing(), sums);
+  BodyArrays arrays = arrays_of_bodies(*model_.bodies, assembly);
+  arrays.mass = mass_.data();
+  arrays.inverse_mass = inverse_mass_.data();
+  arrays.inverse_inertia = inverse_inertia_.data();
+  sweep_bodies(model_.kernels_at(assembly.state.last_step.loading), at_rate_, c, constants_, grains, pairs, arrays,
+               long(bodies.motion.size()), long(assembly.mass.size()), model_.sharing(), sums);
   // What pads the lanes loses the mean velocity too, step after step.
   std::fill(bodies.motion.begin() + std::ptrdiff_t(model_.bodies->size()), bodies.motion.end(), BodyMotion{});
 }
