@@ -26,7 +26,12 @@ void set_body_kernels(const KernelConfiguration& key, Kernels& kernels) {
 void BodyKernels::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
   with_shape(key.shape, [&](auto is) {
     using By = typename decltype(is)::By;
-    if constexpr (By::round || By::rigid) set_body_kernels<By, RVELAB_LANES>(key, kernels);
+#ifdef RVELAB_FEWER_KERNELS
+    constexpr bool has_kernels = By::round;  // as step_kernels.hpp
+#else
+    constexpr bool has_kernels = By::round || By::rigid;
+#endif
+    if constexpr (has_kernels) set_body_kernels<By, RVELAB_LANES>(key, kernels);
   });
 }
 
