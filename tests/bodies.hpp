@@ -12,6 +12,7 @@
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/specimen/clumps.hpp"
 #include "rvelab/specimen/solids.hpp"
+#include "tests/solver/instruction_set.hpp"
 #include "tests/specimens.hpp"
 
 namespace rvelab::test {
@@ -126,6 +127,27 @@ inline Conserved conserved_in(const Specimen& s) {
     sum.energy += 0.5 * (mass * body.velocity.squaredNorm() + body.spin.dot(spun));
   }
   return sum;
+}
+
+/// Quasi-static loading and loading at a rate, in a frame that turns, have the same bits by every instruction set.
+inline void check_instruction_sets(Specimen s) {
+  s.solver.fixed_substeps = 60;
+  for (const double dt : {0.0, 1e-3}) {
+    std::vector<std::byte> scalar;
+    for (const char* name : {"scalar", "baseline", "v3", "v4"}) {
+      CAPTURE(name, dt);
+      const InstructionSet chosen(name);
+      try {
+        Rve rve(s);
+        rve.apply(gradient(-1e-3, 3e-3, 0, 5e-4), dt);
+        rve.apply(gradient(0, 1e-3, 2e-3, 0), dt);
+        if (scalar.empty()) scalar = rve.save();
+        CHECK(bool(rve.save() == scalar));
+      } catch (const InputError&) {
+        WARN(std::string("not on this processor: ") + name);
+      }
+    }
+  }
 }
 
 /// Two that meet and part. Without friction the energy is kept too: what tangential springs hold ends as the contact

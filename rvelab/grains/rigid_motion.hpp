@@ -21,6 +21,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "rvelab/grains/turns.hpp"
+
 namespace rvelab {
 
 /// Unit quaternion, body frame to cell frame; scalar part first, as in a file.
@@ -61,20 +63,13 @@ inline Turn turn_of(const Eigen::Matrix3d& rotation) {
 
 /// Free rotation for a time t (s): momentum (kg m^2/s) in the body frame, `moments` about the principal axes (kg m^2).
 /// Returns t wm, the Cayley vector of the turn (axes of the body).
-inline Eigen::Vector3d rotate_freely(double t, const Eigen::Vector3d& moments, Eigen::Vector3d& momentum, Turn& q) {
-  constexpr int most_iterations = 60;  // of steps beyond all use; they end at the last bit long before
-  const Eigen::Vector3d inverse = moments.cwiseInverse();
-  Eigen::Vector3d middle = momentum;
-  for (int k = 0; k < most_iterations; ++k) {
-    const Eigen::Vector3d next = momentum + (0.5 * t) * middle.cross(middle.cwiseProduct(inverse));
-    const bool settled = (next - middle).squaredNorm() <= 1e-32 * next.squaredNorm();
-    middle = next;
-    if (settled) break;
-  }
-  const Eigen::Vector3d turned = t * middle.cwiseProduct(inverse);
-  momentum = 2 * middle - momentum;
-  q = normalised(after(q, cayley_turn(turned)));
-  return turned;
+static inline Eigen::Vector3d rotate_freely(double t, const Eigen::Vector3d& moments, Eigen::Vector3d& momentum,
+                                            Turn& q) {
+  Triple<double> of_lane = {momentum[0], momentum[1], momentum[2]};
+  const Triple<double> turned = rotate_freely<double>(t, {1 / moments[0], 1 / moments[1], 1 / moments[2]}, of_lane);
+  momentum = {of_lane.x, of_lane.y, of_lane.z};
+  q = normalised(after(q, cayley_turn({turned.x, turned.y, turned.z})));
+  return {turned.x, turned.y, turned.z};
 }
 
 }  // namespace rvelab

@@ -152,20 +152,7 @@ TEST_CASE("Superellipsoids have the same bits by every instruction set") {
                                       {blocky, HertzRadius::curvature}}) {
     Specimen s = pressed_solids(3, shape, 6, Law::hertz_mindlin);
     s.contact.hertz_radius = radius;
-    s.solver.fixed_substeps = 60;
-    std::vector<std::byte> scalar;
-    for (const char* name : {"scalar", "baseline", "v3", "v4"}) {
-      CAPTURE(name, shape.e);
-      const InstructionSet chosen(name);
-      try {
-        Rve rve(s);
-        rve.apply(gradient(-1e-3, 3e-3, 0, 5e-4), 0);
-        if (scalar.empty()) scalar = rve.save();
-        CHECK(bool(rve.save() == scalar));
-      } catch (const InputError&) {
-        WARN(std::string("not on this processor: ") + name);
-      }
-    }
+    check_instruction_sets(s);
   }
 }
 

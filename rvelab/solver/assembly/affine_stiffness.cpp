@@ -116,8 +116,8 @@ Matrix6 sum_over_bodies(const Model& model, const Assembly& assembly, const Of& 
     const auto [kn, kt] = coefficients(p, at);
     const Vector3 n = Vector3(at.along().x, at.along().y, at.along().z) / at.along_length();
     const Vector3 b = Vector3(at.branch.x, at.branch.y, at.branch.z) +
-                      assembly.bodies.arm[std::size_t(assembly.pairs.i[p])] -
-                      assembly.bodies.arm[std::size_t(assembly.pairs.j[p])];
+                      assembly.bodies.arm(std::size_t(assembly.pairs.i[p])) -
+                      assembly.bodies.arm(std::size_t(assembly.pairs.j[p]));
     // Of e b = rows e: motion of the branch by the six strains.
     Eigen::Matrix<double, 3, 6> motion;
     for (int k = 0; k < 6; ++k) motion.col(k) = strain_matrix(Vector6::Unit(k)) * b;

@@ -132,6 +132,7 @@ struct PairTable {
   /// Interactions other than contacts, by kind, those that there are: their force rows stand behind those of the pairs.
   std::vector<InteractionTable> interactions;
   Buffer resultants;  ///< what they give to the grains (kernels/configuration.hpp); empty without them
+  Buffer on_members;  ///< what the members of bodies get from their pairs (BodyArrays::resultants)
 
   std::size_t padded() const { return i.size(); }
 };

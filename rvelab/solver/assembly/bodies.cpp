@@ -36,6 +36,19 @@ double radius_of_volume(Shape shape, double volume, double thickness) {
 
 }  // namespace
 
+void BodyMotions::set_arm(std::size_t g, const Vector3& arm) {
+  for (int k = 0; k < 3; ++k) arms[k][g] = arm[k];
+}
+void BodyMotions::set_image(std::size_t g, const Image& image) {
+  for (std::size_t k = 0; k < 3; ++k) images[k][g] = image[k];
+}
+
+std::size_t bytes_of(const BodyMotions& b) {
+  std::size_t sum = b.motion.capacity() * sizeof(BodyMotion) + b.turning.capacity() * sizeof(double);
+  for (int k = 0; k < 3; ++k) sum += (b.arms[k].capacity() + b.images[k].capacity()) * sizeof(double);
+  return sum;
+}
+
 void set_physical_masses(Model& model) {
   const std::size_t n = model.size();
   std::vector<double> mass(n), inertia(n);
@@ -53,6 +66,10 @@ void set_physical_masses(Model& model) {
         mass[g] = bodies->share[g] * bodies->mass[b];
         inertia[g] = bodies->mass[b] * bodies->gyration[b].minCoeff();
       }
+      for (int k = 0; k < 3; ++k) {
+        bodies->moments_about[k][b] = bodies->moments(b)[k];
+        bodies->inverse_moments_about[k][b] = 1 / bodies->moments(b)[k];
+      }
     }
     model.bodies = std::move(bodies);
   }
@@ -60,14 +77,23 @@ void set_physical_masses(Model& model) {
   model.inertia = std::move(inertia);
 }
 
+static_assert(sizeof(BodyMotion) == body_row_length * sizeof(double));
+
 void open_bodies(const Specimen& s, Model& model, Assembly& assembly) {
   if (s.bodies.empty()) return;
   auto bodies = std::make_shared<BodyModel>();
   const std::size_t n = s.grains.size();
   bodies->owner.resize(n);
   bodies->share.resize(n);
-  assembly.bodies.arm.resize(n);
-  assembly.bodies.image.resize(n);
+  const std::size_t padded = padded_to_lanes(s.bodies.size());
+  bodies->row_of_owner.assign(padded_to_lanes(n), std::int32_t(s.bodies.size()) * body_row_length);
+  for (int k = 0; k < 3; ++k) {
+    for (Buffer* of_bodies : {&bodies->moments_about[k], &bodies->inverse_moments_about[k]})
+      of_bodies->assign(padded, 1);
+    for (Buffer* of_members : {&bodies->offset_along[k], &assembly.bodies.arms[k], &assembly.bodies.images[k]})
+      of_members->assign(padded_to_lanes(n), 0);
+  }
+  assembly.bodies.turning.assign(4 * padded, 0);
   for (const BodyMember& member : s.members) bodies->offset.push_back(member.offset);
   double radii = 0;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -79,20 +105,29 @@ void open_bodies(const Specimen& s, Model& model, Assembly& assembly) {
     bodies->gyration.push_back(body.gyration);
     bodies->radius.push_back(radius_of_volume(s.shape, body.volume, model.thickness));
     radii += bodies->radius.back();
-    assembly.bodies.motion.push_back({body.position, body.velocity, body.spin, body.orientation});
+    BodyMotion motion;
+    motion.position = body.position;
+    motion.velocity = body.velocity;
+    motion.spin = body.spin;
+    motion.orientation = body.orientation;
+    assembly.bodies.motion.push_back(motion);
     const Matrix3 axes = axes_of(body.orientation);
     double lever = 0, volumes = 0;
     for (std::size_t g = first; g < last; ++g) {
       bodies->owner[g] = std::int32_t(b);
       lever = std::max(lever, bodies->offset[g].norm() + model.reach()[g]);
       volumes += bodies->share[g] = grain_volume(s.shape, s.grains.radius[g], model.thickness);
-      assembly.bodies.arm[g] = axes * bodies->offset[g];
-      assembly.bodies.image[g] = nearest_image(s.cell, s.grains.position[g] - body.position - assembly.bodies.arm[g]);
+      bodies->row_of_owner[g] = std::int32_t(b) * body_row_length;
+      for (int k = 0; k < 3; ++k) bodies->offset_along[k][g] = bodies->offset[g][k];
+      const Vector3 arm = axes * bodies->offset[g];
+      assembly.bodies.set_arm(g, arm);
+      assembly.bodies.set_image(g, nearest_image(s.cell, s.grains.position[g] - body.position - arm));
     }
     for (std::size_t g = first; g < last; ++g) bodies->share[g] /= volumes;
     bodies->lever.push_back(lever);
   }
-  bodies->first.push_back(std::int32_t(n));
+  bodies->first.resize(padded + 1, std::int32_t(n));
+  assembly.bodies.motion.resize(padded);
   bodies->mass.resize(bodies->size());
   model.mean_radius = radii / double(bodies->size());
   model.largest_skin = model.options.skin * model.mean_radius;
@@ -115,12 +150,12 @@ void close_bodies(const Model& model, const Assembly& assembly, Specimen& s) {
 void leave_out_inner_pairs(const Model& model, const Assembly& assembly, std::vector<ListedPair>& pairs) {
   if (model.bodies == nullptr) return;
   const auto& owner = model.bodies->owner;
-  const auto& image = assembly.bodies.image;
   std::erase_if(pairs, [&](const ListedPair& pair) {
     const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
     if (owner[i] != owner[j]) return false;
+    const Image of_i = assembly.bodies.image(i), of_j = assembly.bodies.image(j);
     for (std::size_t k = 0; k < 3; ++k)
-      if (pair.image[k] != image[i][k] - image[j][k]) return false;
+      if (pair.image[k] != of_i[k] - of_j[k]) return false;
     return true;
   });
 }
@@ -140,13 +175,13 @@ void reduce_bodies(const Reduction& reduction, const Model& model, Assembly& ass
     for (std::size_t g = 0; g < model.size(); ++g)
       put_orientation(assembly.bodies.motion[g].orientation,
                       assembly.rows.data() + g * std::size_t(model.row_length()));
-  // From the orientation, as a state that is opened finds them.
-  for (std::size_t g = 0; g < model.size(); ++g)
-    assembly.bodies.arm[g] =
-        axes_of(assembly.bodies.motion[std::size_t(model.bodies->owner[g])].orientation) * model.bodies->offset[g];
-  for (Image& image : assembly.bodies.image) {
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    // From the orientation, as a state that is opened finds them.
+    const Turn& orientation = assembly.bodies.motion[std::size_t(model.bodies->owner[g])].orientation;
+    assembly.bodies.set_arm(g, axes_of(orientation) * model.bodies->offset[g]);
+    const Image image = assembly.bodies.image(g);
     const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(image[0], image[1], image[2]);
-    image = {n[0], n[1], n[2]};
+    assembly.bodies.set_image(g, {n[0], n[1], n[2]});
   }
 }
 
@@ -156,20 +191,21 @@ void wrap_bodies(const Model& model, Assembly& assembly) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Image moved = wrap(assembly.cell, assembly.bodies.motion[b].position);
     for (auto g = std::size_t(bodies.first[b]); g < std::size_t(bodies.first[b + 1]); ++g)
-      for (std::size_t k = 0; k < 3; ++k) assembly.bodies.image[g][k] -= moved[k];
+      for (std::size_t k = 0; k < 3; ++k) assembly.bodies.images[k][g] -= moved[k];
   }
 }
 
 void follow_wrapping(const std::vector<Image>& moved, Assembly& assembly) {
-  for (std::size_t g = 0; g < assembly.bodies.image.size(); ++g)
-    for (std::size_t k = 0; k < 3; ++k) assembly.bodies.image[g][k] += moved[g][k];
+  if (assembly.bodies.motion.empty()) return;
+  for (std::size_t g = 0; g < moved.size(); ++g)
+    for (std::size_t k = 0; k < 3; ++k) assembly.bodies.images[k][g] += moved[g][k];
 }
 
 namespace {
 
 /// Forces and torques of the pairs, in the order of every sum over them.
 template <int D, bool Rolling>
-void gather(const BodyModel& bodies, const PairTable& pairs, const double* radius, const Vector3* arms,
+void gather(const BodyModel& bodies, const PairTable& pairs, const double* radius, const BodyMotions& motions,
             Resultant* resultants) {
   constexpr std::size_t length = D == 2 ? 4 : 8;
   const double* force = pairs.force.data();
@@ -182,7 +218,7 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
     const double* row = force + length * p;
     const auto i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
     Resultant &on_i = resultants[owner[i]], &on_j = resultants[owner[j]];
-    const double *ai = arms[i].data(), *aj = arms[j].data();
+    const Vector3 ai = motions.arm(i), aj = motions.arm(j);
     const double fx = row[0], fy = row[1];
     if constexpr (D == 2) {
       on_i.force[0] -= fx;
@@ -244,9 +280,7 @@ void gather_on_bodies(const Model& model, const Assembly& assembly, std::vector<
       gather_solids<false>(assembly.pairs, forces.data());
     return;
   }
-  const auto by = [&](auto work) {
-    work(bodies, assembly.pairs, model.radius.data(), assembly.bodies.arm.data(), forces.data());
-  };
+  const auto by = [&](auto work) { work(bodies, assembly.pairs, model.radius.data(), assembly.bodies, forces.data()); };
   if (model.dimension() == 2)
     by(gather<2, false>);
   else if (model.contact.rolling)
@@ -264,8 +298,8 @@ Matrix3 virial_of_bodies(const Model& model, const Assembly& assembly) {
       const auto p = std::size_t(listed);
       if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
       const Branch b = pair.branch(p);
-      const Vector3 branch = Vector3(b.x, b.y, b.z) + assembly.bodies.arm[std::size_t(pairs.i[p])] -
-                             assembly.bodies.arm[std::size_t(pairs.j[p])];
+      const Vector3 branch = Vector3(b.x, b.y, b.z) + assembly.bodies.arm(std::size_t(pairs.i[p])) -
+                             assembly.bodies.arm(std::size_t(pairs.j[p]));
       sum += force_of(model, pairs, p) * branch.transpose();
     }
     return sum;
@@ -303,12 +337,13 @@ void join_members(const Model& model, const Assembly& assembly, Network& net) {
     c.i = bodies.owner[i];
     c.j = bodies.owner[j];
     c.member_branch = c.branch;
-    c.offset_i = assembly.bodies.arm[i];
-    c.offset_j = assembly.bodies.arm[j];
+    c.offset_i = assembly.bodies.arm(i);
+    c.offset_j = assembly.bodies.arm(j);
     c.branch += c.offset_i - c.offset_j;
     c.arm_i += c.offset_i;
     c.arm_j += c.offset_j;
-    for (std::size_t k = 0; k < 3; ++k) c.image[k] += assembly.bodies.image[j][k] - assembly.bodies.image[i][k];
+    const Image of_i = assembly.bodies.image(i), of_j = assembly.bodies.image(j);
+    for (std::size_t k = 0; k < 3; ++k) c.image[k] += of_j[k] - of_i[k];
     const Vector3 force = c.force();
     // About the body's centre; the contact point is where both arms end.
     net.grains[std::size_t(c.i)].resultant -= force;

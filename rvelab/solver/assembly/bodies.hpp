@@ -15,6 +15,7 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/grains/rigid_motion.hpp"
+#include "rvelab/solver/assembly/buffer.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
@@ -28,7 +29,7 @@ struct Network;
 /// What an increment never changes.
 struct BodyModel {
   std::vector<std::int64_t> id;
-  std::vector<std::int32_t> first;   ///< by body, and the number of grains at the end
+  std::vector<std::int32_t> first;   ///< by body, and the number of grains at the end, up to the padding
   std::vector<double> volume, mass;  ///< m^3, kg
   std::vector<double> radius;        ///< m, of the sphere (disc) of the same volume
   std::vector<double> lever;         ///< m, from the centre to the farthest point at most
@@ -37,27 +38,38 @@ struct BodyModel {
   std::vector<std::int32_t> owner;
   std::vector<Vector3> offset;  ///< m, body frame
   std::vector<double> share;    ///< of the mass and volume of the body
+  // For the kernels (BodyArrays), padded.
+  Buffer moments_about[3], inverse_moments_about[3], offset_along[3];
+  std::vector<std::int32_t> row_of_owner;
   std::size_t size() const { return id.size(); }
   Vector3 moments(std::size_t b) const { return mass[b] * gyration[b]; }
 };
 
+/// A row of the kernels (body_row_length).
 struct BodyMotion {
-  Vector3 position, velocity, spin;
+  Vector3 position = Vector3::Zero();
+  double after_position = 0;
+  Vector3 velocity = Vector3::Zero();
+  double after_velocity = 0;
+  Vector3 spin = Vector3::Zero();
+  double after_spin = 0;
   Turn orientation;
 };
 
-/// What it changes.
+/// What it changes. Bodies and members are padded to whole blocks of lanes.
 struct BodyMotions {
-  std::vector<BodyMotion> motion;  ///< by body
-  // Follow from them and from the positions of the members.
-  std::vector<Vector3> arm;  ///< by member, m, cell frame
-  std::vector<Image> image;  ///< by member
+  std::vector<BodyMotion, CacheLineAllocator<BodyMotion>> motion;  ///< by body
+  // Follow from them and from the positions of the members: by member, m, cell frame; as numbers; by body, four each.
+  Buffer arms[3], images[3];
+  Buffer turning;
+
+  Vector3 arm(std::size_t g) const { return {arms[0][g], arms[1][g], arms[2][g]}; }
+  Image image(std::size_t g) const { return {int(images[0][g]), int(images[1][g]), int(images[2][g])}; }
+  void set_arm(std::size_t g, const Vector3& arm);
+  void set_image(std::size_t g, const Image& image);
 };
 
-inline std::size_t bytes_of(const BodyMotions& b) {
-  return b.motion.capacity() * sizeof(BodyMotion) + b.arm.capacity() * sizeof(Vector3) +
-         b.image.capacity() * sizeof(Image);
-}
+std::size_t bytes_of(const BodyMotions& bodies);
 
 /// Puts bodies and what follows from them into model and assembly, whose grains stand in their rows already.
 void open_bodies(const Specimen& specimen, Model& model, Assembly& assembly);

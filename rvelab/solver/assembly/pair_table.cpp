@@ -11,7 +11,7 @@ std::size_t bytes_of(const PairTable& t) {
   std::size_t sum = bytes(t.order, t.touched, t.shifted, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots,
                           t.tasks, t.gathered, t.slots_beyond) +
                     bytes(t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force,
-                          t.radius_i, t.radius_j, t.solid, t.resultants);
+                          t.radius_i, t.radius_j, t.solid, t.resultants, t.on_members);
   for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
   for (const InteractionTable& each : t.interactions) {
     sum += bytes(each.i, each.j, each.image, each.row_i, each.row_j);
@@ -76,6 +76,8 @@ void derive_pairs(const Model& model, PairTable& pairs) {
     }
   });
   if (moves_as_body(model.shape)) pairs.solid.assign(8 * padded, 0.0);
+  if (model.bodies)
+    pairs.on_members.resize(std::size_t(force_row_length(model.dimension())) * padded_to_lanes(model.size()));
   pairs.touched.assign(padded / 8, 0);
   pairs.shifted.assign(padded / 8, 0);
   for (std::size_t p = 0; p < padded; ++p) pairs.shifted[p / 8] |= std::uint8_t(is_shifted(pairs.image[p]));

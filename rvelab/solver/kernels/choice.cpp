@@ -17,12 +17,14 @@ struct InstructionSet {
   const char* name;
   bool runs_here;
   Setter (*of)(Shape);
+  Setter of_bodies;
 };
 
 #define RVELAB_SETTERS(isa)                                                                             \
   [](Shape shape) {                                                                                     \
     return with_shape(shape, [](auto is) -> Setter { return &StepKernels<decltype(is)::value>::isa; }); \
-  }
+  },                                                                                                    \
+      &BodyKernels::isa
 
 /// From widest to plainest.
 const std::vector<InstructionSet>& instruction_sets() {
@@ -81,6 +83,7 @@ Kernels kernels_for(const KernelConfiguration& key) {
   Kernels kernels;
   instruction_sets().back().of(key.shape)(key, kernels);
   set.of(key.shape)(key, kernels);
+  set.of_bodies(key, kernels);
   if (kernels.pairs == nullptr)
     throw InputError(
         "this build has no kernels of superellipsoids, dashpots, the laws hertz_stiffness and linear_adhesive and the "

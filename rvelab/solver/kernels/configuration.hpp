@@ -56,6 +56,9 @@ struct StepConstants {
   bool losses = false;  ///< at a rate: sums of what the dampings take are asked for
 };
 
+/// Form of local damping; the grain loops are compiled for each.
+enum class KernelDamping { none, vector, component };
+
 /// Listed pairs, padded with pairs that never touch to a multiple of eight. The first `near` of them touched when they
 /// were listed, or so; they are computed at every step. The others seldom come to touch: eight at a time they are only
 /// checked, until one does (next_run in kernels/pairs.hpp).
@@ -109,6 +112,34 @@ struct GrainArrays {
   void* sweep = nullptr;
 };
 
+/// Doubles of a body: {x, y, z, 0, u, v, w, 0, wx, wy, wz, 0, q0, q1, q2, q3}, q its orientation.
+constexpr int body_row_length = 16;
+
+/// Rigid bodies and their members, which are grains (assembly/bodies.hpp); both padded to a multiple of eight, bodies
+/// with such as have no members, members with those of such a body.
+struct BodyArrays {
+  double* motion = nullptr;             ///< rows
+  double* turning = nullptr;            ///< rows of four: spin of the last turn in the cell frame; 2D: [0] alone
+  const std::int32_t* first = nullptr;  ///< member of each body, and the end
+  const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;  ///< those in use
+  const double *moments[3] = {}, *inverse_moments[3] = {};                            ///< physical, principal axes
+  // By member.
+  const std::int32_t* row_of_owner = nullptr;  ///< where the row of its body starts
+  const double* offset[3] = {};                ///< body frame
+  double* arm[3] = {};                         ///< cell frame
+  const double* image[3] = {};                 ///< as numbers
+  double* resultants = nullptr;  ///< of its contacts, about the centre of the body; 2D {fx, fy, T, -}, 3D {f, -, T, -}
+};
+
+/// Constants of one sub-step beside StepConstants (loading/body_motion.hpp).
+struct BodyConstants {
+  KernelDamping damping = KernelDamping::none;
+  UpperTriangle inverse_stretch, gradient;             ///< B^-1 and G
+  double mean_spin_before[3] = {}, mean_spin[3] = {};  ///< axial(W + Omega) of the sub-step before and of this one
+  bool frame_turns = false;                            ///< at a rate in 3D
+  double frame_back[4] = {1, 0, 0, 0};                 ///< quaternion of StepConstants::spin_map
+};
+
 /// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (not round: (|v'| + l |w|)^2, as fast
 /// as their bounds can move), energy taken by local and global damping.
 struct StepSums {
@@ -121,6 +152,12 @@ using PairKernel = void (*)(const StepConstants&, const PairArrays&, const doubl
                             Dissipation*);
 using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const PairArrays&, long begin, long end,
                              StepSums*);
+
+/// Of the members [begin, end), as the gather table has its chunks: force and torque of their contacts.
+using MemberForces = void (*)(const GrainArrays&, const PairArrays&, const BodyArrays&, long begin, long end);
+/// Of the bodies, or of the members, [begin, end), multiples of eight; members have a largest speed alone.
+using BodyKernel = void (*)(const StepConstants&, const BodyConstants&, const BodyArrays&, double* grain_rows,
+                            long begin, long end, StepSums*);
 
 /// Doubles that a kernel of places writes for a pair: n_x, n_y, and in m overlap (< 0: apart by that or more), h_i,
 /// h_j, torques of a force of 1 along n on i and on j (kernels/ellipses.hpp), 0; in space n, overlap, contact point
@@ -135,9 +172,6 @@ using PlaceKernel = void (*)(const StepConstants&, const PairArrays&, const doub
 using InteractionKernel = void (*)(const StepConstants&, const InteractionArrays&, const double* grain_rows, long begin,
                                    long end);
 
-/// Form of local damping that an integration kernel is compiled for.
-enum class KernelDamping { none, vector, component };
-
 /// The compiled kernels of one configuration.
 struct Kernels {
   PairKernel pairs = nullptr;              ///< contact forces with their increments
@@ -146,6 +180,10 @@ struct Kernels {
   PlaceKernel places = nullptr;            ///< shapes that are not round: where pairs are, for sums outside the loops
   GrainKernel quasi_static[3] = {};        ///< by KernelDamping
   GrainKernel at_rate[3] = {};
+  // Bodies: clumps of round grains, and superellipsoids, which are placed as they move.
+  MemberForces gather_on_members = nullptr;
+  BodyKernel move_bodies[2] = {};  ///< quasi-static, at a rate
+  BodyKernel place_members = nullptr;
   /// By the kind of interaction (interaction/laws.hpp), round grains: as `pairs` and `evaluate`.
   InteractionKernel interactions[interaction_kinds] = {};
   InteractionKernel evaluate_interactions[interaction_kinds] = {};

@@ -1,5 +1,5 @@
 // The functions that fill in the kernels of a configuration, one for each shape and instruction set: SHAPE's are in
-// step_SHAPE.cpp. A build defines those that its compiler can make.
+// step_SHAPE.cpp, those of bodies of all shapes in step_bodies.cpp. A build defines those that its compiler can make.
 #pragma once
 
 #include "rvelab/solver/kernels/configuration.hpp"
@@ -27,5 +27,13 @@ struct StepKernels {
   void StepKernels<Shape::shape>::v4(const KernelConfiguration&, Kernels&);
 RVELAB_SHAPES(RVELAB_DECLARE)
 #undef RVELAB_DECLARE
+
+/// The loops over bodies and members, of shapes that have bodies.
+struct BodyKernels {
+  static void scalar(const KernelConfiguration&, Kernels&);
+  static void baseline(const KernelConfiguration&, Kernels&);
+  static void v3(const KernelConfiguration&, Kernels&);
+  static void v4(const KernelConfiguration&, Kernels&);
+};
 
 }  // namespace rvelab

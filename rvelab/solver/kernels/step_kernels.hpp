@@ -137,7 +137,7 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
   }
   if constexpr (Pairs::By::round && !fewer_kernels)
     set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
-  // Bodies have their own step (loading/body_motion.hpp).
+  // Bodies have their own step (step_bodies.cpp).
   if constexpr (Pairs::By::rigid) {
     kernels.lanes = W;
     return;

@@ -1,5 +1,5 @@
 // The step of bodies (clumps), in place of that of grains (kernels/integrate.hpp): forces and moments of the members
-// are gathered, the body is damped and moves, the members are placed from it.
+// are gathered, the body is damped and moves, the members are placed from it (kernels/bodies.hpp, body_members.hpp).
 //
 //   v' as of grains, with the mass of the body
 //   quasi-static: w' <- w' + T/I with one scaled I for all axes; at a rate: L <- L + dt T, then free rotation for dt
@@ -17,18 +17,24 @@
 
 namespace rvelab {
 
-/// A sub-step, beside the constants of the kernels.
-struct BodyStep {
-  const StepConstants& constants;
-  bool at_rate = false;
-  KernelDamping damping = KernelDamping::none;
-  Matrix3 inverse_stretch = Matrix3::Identity();  ///< B^-1 = L0 Lm^-1
-  Matrix3 gradient = Matrix3::Zero();             ///< G, 1/s
-  Vector3 mean_spin_before = Vector3::Zero();     ///< axial(W + Omega) of the sub-step before and of this one, rad/s
-  Vector3 mean_spin = Vector3::Zero();
-};
+/// The bodies of one Advance.
+class BodySweep {
+ public:
+  /// With the masses in use, which must stay.
+  BodySweep(const Model& model, const Assembly& assembly, bool at_rate, KernelDamping damping);
+  /// `gradient`: G (1/s); `inverse_stretch`: B^-1 = L0 Lm^-1; spins: axial(W + Omega) of the sub-step before and of
+  /// this one (rad/s).
+  void set_step(const StepConstants& constants, const Matrix3& inverse_stretch, const Matrix3& gradient,
+                const Vector3& mean_spin_before, const Vector3& mean_spin);
+  void move(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, Assembly& assembly,
+            StepSums& sums);
 
-void move_bodies(const Model& model, const BodyStep& step, Assembly& assembly, StepSums& sums);
+ private:
+  const Model& model_;
+  Buffer mass_, inverse_mass_, inverse_inertia_;  ///< padded
+  BodyConstants constants_;
+  bool at_rate_;
+};
 
 /// v' + shift f/m and the like of spins, where the half step changes; members follow.
 void shift_bodies(const Model& model, double shift, Assembly& assembly);

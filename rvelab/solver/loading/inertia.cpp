@@ -269,7 +269,7 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_bodies(const Model& model, c
         const auto g = std::size_t(as_j ? assembly.pairs.j[p] : assembly.pairs.i[p]);
         const auto b = std::size_t(bodies.owner[g]);
         GrainSums<D>& of = sums[b];
-        const Vector3& arm = assembly.bodies.arm[g];
+        const Vector3 arm = assembly.bodies.arm(g);
         const double r = bodies.radius[b], far = arm.norm(), farthest = far + model.radius[g];
         of.stiffest = std::max(of.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, far, r));
         of.stiffest_turn = std::max(of.stiffest_turn, 4 * t.firm.tangential * farthest * farthest + 2 * t.firm.rolling +

@@ -190,6 +190,7 @@ class SubSteps {
   PairArrays pairs_;
   GrainArrays grains_;
   StepSums sums_;
+  BodySweep bodies_;
   const bool in_one_sweep_;
   WaitingPairs waiting_;
   ReleasedEnergy released_;
@@ -221,6 +222,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
             what.steps},
       step_(what.step),
       check_every_(what.check_every),
+      bodies_(model_, assembly_, at_rate_, damping_kind(model_.damping, what.loading)),
       in_one_sweep_(model_.size() >= least_grains_in_one_sweep && !model_.options.energy_balance &&
                     !has_interactions(assembly_) && !model_.bodies && (team_ == nullptr || team_->count() == 1)),
       clock_(model_.times) {
@@ -266,14 +268,11 @@ void SubSteps::move_grains() {
 }
 
 void SubSteps::move_bodies_of_step() {
-  BodyStep step{c_, at_rate_, damping_kind(model_.damping, at_rate_ ? Loading::at_rate : Loading::quasi_static)};
   const Matrix3& after = assembly_.cell.lattice;
-  const Matrix3 middle = 0.5 * (lattice_before_ + after);
-  step.inverse_stretch = lattice_before_ * upper_inverse(middle);
-  step.gradient = step.inverse_stretch * ((after - lattice_before_) / step_) * upper_inverse(lattice_before_);
-  step.mean_spin_before = mean_spin_before_;
-  step.mean_spin = assembly_.state.last_step.mean_spin;
-  move_bodies(model_, step, assembly_, sums_);
+  const Matrix3 middle = 0.5 * (lattice_before_ + after), inverse_stretch = lattice_before_ * upper_inverse(middle);
+  const Matrix3 gradient = inverse_stretch * ((after - lattice_before_) / step_) * upper_inverse(lattice_before_);
+  bodies_.set_step(c_, inverse_stretch, gradient, mean_spin_before_, assembly_.state.last_step.mean_spin);
+  bodies_.move(c_, grains_, pairs_, assembly_, sums_);
 }
 
 void SubSteps::take_list() {

@@ -20,6 +20,11 @@ void sweep_pairs(PairKernel kernel, const StepConstants& constants, const PairAr
 void sweep_grains(GrainKernel kernel, const StepConstants& constants, const GrainArrays& grains,
                   const PairArrays& pairs, long padded_grains, Workers* team, StepSums& sums);
 
+/// Forces to the members of bodies, bodies, members: three passes, between which a team waits for its last thread.
+void sweep_bodies(const Kernels& kernels, bool at_rate, const StepConstants& constants, const BodyConstants& of_bodies,
+                  const GrainArrays& grains, const PairArrays& pairs, const BodyArrays& bodies, long padded_bodies,
+                  long padded_members, Workers* team, StepSums& sums);
+
 /// Grains from which pairs wait, on one thread (Zen 4, 32 MB of cache: 256,000 spheres take 0.71 of the time, 32,000
 /// spheres and 10,000 discs as long as in two loops). A team holds more in its caches, and its pieces go apart.
 constexpr std::size_t least_grains_in_one_sweep = 30'000;
