@@ -148,7 +148,7 @@ TEST_CASE("Clumps have the same bits by every instruction set") {
 
 TEST_CASE("A large cell of clumps has the same bits on any team of threads", "[solver]") {
   for (const auto& [shape, side] : {std::pair{Shape::disc, 124}, {Shape::sphere, 25}}) {
-    Specimen start = clumps_in_a_crystal(shape, side, "pair", 0.0055, 3);
+    Specimen start = clumps_in_a_crystal(shape, side, "pair", 0.005, 3);
     REQUIRE(start.grains.size() >= least_shared_grains);
     start.solver.fixed_substeps = 8;
     const auto end_state = [&](Workers* team) {
