@@ -300,7 +300,7 @@ typedef struct rvelab_info {
   double inertial_number;        /* of the last step that was committed; dt = 0: zero; infinite at p <= 0 */
   double permeability_ratio;     /* e^3/(1 + e) over its value when the RVE was spawned */
   double min_height_ratio;       /* least height of the cell over the mean diameter */
-  int64_t grain_steps;           /* grains times sub-steps that led to this state since its specimen was made */
+  int64_t grain_steps;           /* grains (members of clumps) times sub-steps, since its specimen was made */
   int64_t bytes_resting;         /* held by the RVE at rest, without what its copies share */
   int64_t bytes_trial;           /* held by its pending trial; 0 without */
   int64_t bytes_working;         /* held beside that between calls in quick succession; 0 at rest */
@@ -397,8 +397,9 @@ int32_t rvelab_set_parameters(rvelab_pool* pool, int64_t id, const char* toml);
 int32_t rvelab_run_stages(rvelab_pool* pool, int64_t n, const int64_t* ids, const char* toml, double* sigma,
                           int32_t* status);
 
-/* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
- * or made again are included, and so is what trials of one committed state share, as if each had made it. */
+/* grain_steps[n]: grains (members of clumps) times sub-steps made for each id in this pool: its cost. Trials that were
+ * reverted, discarded or made again are included, and so is what trials of one committed state share, as if each had
+ * made it. */
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps);
 
 /* ---- state ----

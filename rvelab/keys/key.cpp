@@ -262,6 +262,11 @@ void assign(toml::table& file, const std::string& assignment) {
       for (toml::node& material : *inner->as_array()) put(*material.as_table(), parts.back(), text, assignment);
       return;
     }
+    if (inner->is_array_of_tables()) {  // the only one, or none is named
+      toml::array& all = *inner->as_array();
+      table = all.size() == 1 ? all[0].as_table() : &find_in(&all, parts[next], parts[next + 1], assignment);
+      continue;
+    }
     if (!inner->is_table()) {
       throw InputError("--set " + assignment + ": " + parts[next] +
                        " is no table in the protocol; allowed: table.key=value; correct the key");

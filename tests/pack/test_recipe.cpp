@@ -199,6 +199,8 @@ TEST_CASE("what contradicts something else is refused by name") {
                Contains("contradicts pack.shape = \"disc\""));
   CHECK_THAT(message_of(small, {"pack.shape=ellipse", "grains.largest_aspect_ratio=0.5"}),
              Contains("is above grains.largest_aspect_ratio"));
+  CHECK_THAT(message_of(mixture, {"grains.share=0.5"}),
+             Contains("names no grains; allowed: 0 (coarse), 1 (fine); give the name or the number of one"));
   const std::string regular = "preparation.method=regular";
   CHECK_THAT(message_of(small, {regular}), Contains("grains of one size and form"));
   CHECK_THAT(message_of(small, {regular, "preparation.first_size=0.3"}), Contains("contradicts method = \"regular\""));

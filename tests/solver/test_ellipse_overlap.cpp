@@ -60,13 +60,12 @@ struct ManyPairs {
 
 struct Found {
   Direction<double> normal;
-  EllipseGap<double> gap;
+  EllipsePlace<double> gap;
 };
 
 Found found(const EllipsePair<double>& p) {
-  Direction<double> n = first_direction(p);
-  const EllipseGap<double> gap = closest_gap(p, n);
-  return {n, gap};
+  const EllipsePlace<double> place = closest_place(p);
+  return {place.n, place};
 }
 
 /// How far an overlap is from the true one, over the shorter long axis (1 m or more); where the two are apart only
@@ -227,7 +226,7 @@ TEST_CASE("f has no slope at the normal of a shallow contact, at tips too", "[so
     for (int k = 0; k < 20000; ++k) {
       const EllipsePair<double> p = pairs.draw(meeting);
       const Found f = found(p);
-      if (f.gap.overlap < 0 || !is_shallow(p, f.gap)) continue;  // deep ones: f to 1e-13, f' to its root
+      if (f.gap.overlap < 0 || !is_shallow(p, f.gap.overlap)) continue;  // deep ones: f to 1e-13, f' to its root
       const EllipseGap<double> there = ellipse_gap(p, f.normal);
       worst = std::max(worst, std::abs(there.slope) / (there.support_i + there.support_j));
     }
@@ -245,12 +244,11 @@ TEST_CASE("Lanes of ellipses are those of one alone, bit for bit", "[solver]") {
       return EllipseMatrix<V2>{both(x.xx, y.xx), both(x.xy, y.xy), both(x.yy, y.yy), both(x.sharpest, y.sharpest)};
     };
     const EllipsePair<V2> p = {both(a.x, b.x), both(a.y, b.y), of(a.i, b.i), of(a.j, b.j)};
-    Direction<V2> n = first_direction(p);
-    const EllipseGap<V2> g = closest_gap(p, n);
+    const EllipsePlace<V2> g = closest_place(p);
     const Found alone[2] = {found(a), found(b)};
     for (int lane = 0; lane < 2; ++lane) {
-      REQUIRE(n.x[lane] == alone[lane].normal.x);
-      REQUIRE(n.y[lane] == alone[lane].normal.y);
+      REQUIRE(g.n.x[lane] == alone[lane].normal.x);
+      REQUIRE(g.n.y[lane] == alone[lane].normal.y);
       REQUIRE(g.overlap[lane] == alone[lane].gap.overlap);
       REQUIRE(g.turned_i[lane] == alone[lane].gap.turned_i);
     }

@@ -9,7 +9,8 @@
 namespace rvelab {
 namespace {
 
-OutlinePlace place_at(const Branch& b, Direction<double> n, const EllipseGap<double>& gap) {
+template <class Gap>
+OutlinePlace place_at(const Branch& b, Direction<double> n, const Gap& gap) {
   const double half_slope = 0.5 * gap.slope;
   return {b,
           b.length(),
@@ -40,10 +41,8 @@ void Outline<Shape::ellipse>::complete_row(const Own& own, double* row) {
 
 template <>
 OutlinePlace Outline<Shape::ellipse>::place(const Branch& b, const double* row_i, const double* row_j) {
-  const EllipsePair<double> pair = pair_of(b, row_i, row_j);
-  Direction<double> n = first_direction(pair);
-  const EllipseGap<double> gap = closest_gap(pair, n);
-  return place_at(b, n, gap);
+  const EllipsePlace<double> place = closest_place(pair_of(b, row_i, row_j));
+  return place_at(b, place.n, place);
 }
 
 template <>

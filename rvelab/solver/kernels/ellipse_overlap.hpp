@@ -7,10 +7,7 @@
 // support points, and rho' = -3 (rho_i h_i'/h_i + rho_j h_j'/h_j): Halley's step costs little more than Newton's. Where
 // f' = 0 and f is not above min b_i^2/a_i + min b_j^2/a_j it is the smallest of all: a circle of that radius, tangent
 // from inside to the sum of both ellipses, lies within it (Blaschke's rolling theorem). What is deeper, where other
-// minima may be smaller, and what does not converge is left to ellipse_search.hpp.
-//
-// The last turn, of 5e-5 at most, goes by the derivatives at hand, up to h''': roots and divisions that would only
-// confirm it are left out.
+// minima may be smaller, and what does not converge is left to ellipse_search.hpp. Over lanes: ellipse_frame.hpp.
 #pragma once
 
 #include "rvelab/lanes/vectors.hpp"
@@ -38,8 +35,6 @@ struct EllipseGap {
   V turned_i, turned_j;    ///< h' = t.(support point), of i from its centre; that of j lies opposite
   V overlap, slope;        ///< f, f'
   V curvature, third;      ///< f'', f'''
-  V radius_i, radius_j;    ///< rho
-  V inverse_i, inverse_j;  ///< 1/h, 1/m
 };
 
 /// A direction, of length 1.
@@ -62,8 +57,7 @@ inline __attribute__((always_inline)) V determinant(const EllipseMatrix<V>& m) {
 }
 
 template <class V>
-inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n, V det_i,
-                                                                V det_j) {
+inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
   const V ix = p.i.xx * n.x + p.i.xy * n.y, iy = p.i.xy * n.x + p.i.yy * n.y;
   const V jx = p.j.xx * n.x + p.j.xy * n.y, jy = p.j.xy * n.x + p.j.yy * n.y;
   EllipseGap<V> g;
@@ -71,23 +65,15 @@ inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePai
   g.support_j = square_root(n.x * jx + n.y * jy);
   const V both = 1.0 / (g.support_i * g.support_j);
   const V inverse_i = g.support_j * both, inverse_j = g.support_i * both;
-  g.inverse_i = inverse_i;
-  g.inverse_j = inverse_j;
   g.turned_i = (n.x * iy - n.y * ix) * inverse_i;
   g.turned_j = (n.x * jy - n.y * jx) * inverse_j;
   g.overlap = (g.support_i + g.support_j) - (n.x * p.x + n.y * p.y);
   g.slope = (g.turned_i + g.turned_j) - (n.x * p.y - n.y * p.x);
-  const V rho_i = det_i * (inverse_i * (inverse_i * inverse_i)), rho_j = det_j * (inverse_j * (inverse_j * inverse_j));
-  g.radius_i = rho_i;
-  g.radius_j = rho_j;
+  const V rho_i = determinant(p.i) * (inverse_i * (inverse_i * inverse_i));
+  const V rho_j = determinant(p.j) * (inverse_j * (inverse_j * inverse_j));
   g.curvature = (rho_i + rho_j) - g.overlap;
   g.third = -3.0 * (rho_i * (g.turned_i * inverse_i) + rho_j * (g.turned_j * inverse_j)) - g.slope;
   return g;
-}
-
-template <class V>
-inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
-  return ellipse_gap(p, n, determinant(p.i), determinant(p.j));
 }
 
 /// Along the normal of the ellipse of M_i + M_j where the branch leaves it, m^3.
@@ -135,60 +121,18 @@ inline __attribute__((always_inline)) Direction<V> next_direction(Direction<V> n
   return turned_back(n, clamped(part, 0.25 * whole), whole);
 }
 
-/// Whether f < 0 at n beyond rounding: no other direction can turn that into an overlap.
-template <class V>
-inline __attribute__((always_inline)) auto is_apart(const EllipseGap<V>& g) {
-  return g.overlap < -1e-12 * (g.support_i + g.support_j);
-}
 /// Whether f is least around n, to a turn of 1e-10 (f itself to 1e-20).
 template <class V>
 inline __attribute__((always_inline)) auto is_least_nearby(const EllipseGap<V>& g) {
   return magnitude_of(g.slope) <= 1e-10 * g.curvature;
 }
-/// Whether f is least so near, a turn of |u| <= 5e-5 away, u = -f'/f'', that its derivatives at hand tell where, to
-/// 1e-10 of n or better: f'' changes by a thousandth on the way.
-template <class V>
-inline __attribute__((always_inline)) auto is_near_least(const EllipseGap<V>& g) {
-  const V squared = g.curvature * g.curvature;
-  return (g.slope * g.slope <= 2.5e-9 * squared) & (magnitude_of(g.slope * g.third) <= 1e-3 * squared) &
-         (g.curvature > 0.0);
-}
-/// Whether steps go on.
-template <class V>
-inline __attribute__((always_inline)) auto is_open(const EllipseGap<V>& g) {
-  return !(is_apart(g) | is_near_least(g));
-}
-
-/// From where is_near_least to where f is least; apart: nowhere. Of g: h, h', f and f'.
-template <class V>
-inline __attribute__((always_inline)) void turn_to_least(const EllipsePair<V>& p, Direction<V>& n, EllipseGap<V>& g) {
-  const V zero = V{};
-  const V inverse = 1.0 / g.curvature;
-  const V u = -(g.slope * inverse);
-  const V solved = u - (u * u) * (0.5 * (g.third * inverse));  // f' + f'' turn + f''' turn^2 / 2 = 0
-  const V turn = is_apart(g) ? zero : solved;
-  const V half = 0.5 * turn, third = (1.0 / 3.0) * turn, versine = turn * half;
-  n = {n.x - (versine * n.x + turn * n.y), n.y - (versine * n.y - turn * n.x)};
-  const V second_i = g.radius_i - g.support_i, second_j = g.radius_j - g.support_j;
-  const V third_i = 3.0 * (g.radius_i * (g.turned_i * g.inverse_i)) + g.turned_i;
-  const V third_j = 3.0 * (g.radius_j * (g.turned_j * g.inverse_j)) + g.turned_j;
-  g.support_i = g.support_i + turn * (g.turned_i + half * (second_i - third * third_i));
-  g.support_j = g.support_j + turn * (g.turned_j + half * (second_j - third * third_j));
-  g.turned_i = g.turned_i + turn * (second_i - half * third_i);
-  g.turned_j = g.turned_j + turn * (second_j - half * third_j);
-  g.overlap = (g.support_i + g.support_j) - (n.x * p.x + n.y * p.y);
-  g.slope = (g.turned_i + g.turned_j) - (n.x * p.y - n.y * p.x);
-}
 /// Whether f, where it is least nearby, is the least of all.
 template <class V>
-inline __attribute__((always_inline)) auto is_shallow(const EllipsePair<V>& p, const EllipseGap<V>& g) {
-  return g.overlap <= p.i.sharpest + p.j.sharpest;
+inline __attribute__((always_inline)) auto is_shallow(const EllipsePair<V>& p, V overlap) {
+  return overlap <= p.i.sharpest + p.j.sharpest;
 }
 
-/// Evaluations of f before a pair is left to the search; 11 were the most that 3e5 shallow contacts took. Contacts at
-/// aspect 0.743, 1/3 and 1/10 take 2.0, 2.7 and 3.5 from the first direction on (2.9, 3.4 and 4.3 with a last one
-/// that confirms: a sub-step takes 1.1 times as long, eight lanes). In one run with that last one (AVX2, ns a pair):
-/// Halley 48, 62, 86; Newton 55, 79, 279; the least of 16 directions, then Halley, 117, 120, 127.
+/// Evaluations of f before a pair is left to the search.
 constexpr int halley_steps = 24;
 
 }  // namespace

@@ -7,7 +7,7 @@
 // below r. A sector whose bound is not below the best f found is done, any other is halved.
 #pragma once
 
-#include "rvelab/solver/kernels/ellipse_overlap.hpp"
+#include "rvelab/solver/kernels/ellipse_frame.hpp"
 
 namespace rvelab {
 namespace {
@@ -157,38 +157,35 @@ __attribute__((noinline)) void search_lanes(Mask open, const EllipsePair<V>& p, 
   std::memcpy(&n.y, y, sizeof(V));
 }
 
-/// Leaves to the search what the steps left open or is too deep for them.
+/// Leaves to the search what the steps did not end or what is too deep for them.
 template <class Mask, class V>
-inline __attribute__((always_inline)) void search_where_needed(const EllipsePair<V>& p, Mask open, Direction<V>& n,
-                                                               EllipseGap<V>& g) {
-  const Mask left = open | !(is_apart(g) | is_shallow(p, g));
-  if (!any_of(left)) return;
-  search_lanes(left, p, n);
-  const EllipseGap<V> found = ellipse_gap(p, n);
-  g.support_i = left ? found.support_i : g.support_i;
-  g.support_j = left ? found.support_j : g.support_j;
-  g.turned_i = left ? found.turned_i : g.turned_i;
-  g.turned_j = left ? found.turned_j : g.turned_j;
-  g.overlap = left ? found.overlap : g.overlap;
-  g.slope = left ? found.slope : g.slope;
+__attribute__((noinline)) EllipsePlace<V> searched_where(Mask deep, const EllipsePair<V>& p, EllipsePlace<V> place) {
+  search_lanes(deep, p, place.n);
+  const EllipseGap<V> found = ellipse_gap(p, place.n);
+  place.support_i = deep ? found.support_i : place.support_i;
+  place.support_j = deep ? found.support_j : place.support_j;
+  place.turned_i = deep ? found.turned_i : place.turned_i;
+  place.turned_j = deep ? found.turned_j : place.turned_j;
+  place.overlap = deep ? found.overlap : place.overlap;
+  place.slope = deep ? found.slope : place.slope;
+  return place;
 }
 
-/// Normals of W pairs and h, h', f, f' there. Where f < 0 the pair is apart, and n is a direction that shows it.
+/// Where two ellipses are closest. Where f < 0 they are apart, and n is a direction that shows it.
 template <class V>
-inline __attribute__((always_inline)) EllipseGap<V> closest_gap(const EllipsePair<V>& p, Direction<V>& n) {
-  const V det_i = determinant(p.i), det_j = determinant(p.j);
-  n = next_direction(n, ellipse_gap(p, n, det_i, det_j));
-  EllipseGap<V> g = ellipse_gap(p, n, det_i, det_j);
-  auto open = is_open(g);
-  for (int evaluation = 2; evaluation < halley_steps && any_of(open); ++evaluation) {
-    const Direction<V> next = next_direction(n, g);
-    n = {open ? next.x : n.x, open ? next.y : n.y};
-    g = ellipse_gap(p, n, det_i, det_j);
-    open = is_open(g);
-  }
-  turn_to_least(p, n, g);
-  search_where_needed(p, open, n, g);
-  return g;
+inline EllipsePlace<V> closest_place(const EllipsePair<V>& p) {
+  const BranchFrame<V> frame = branch_frame(p);
+  V t = first_tangent(frame), curvature = V{};
+  MaskOf<V> ended = t < t;
+  for (int evaluation = 1; evaluation <= halley_steps && any_of(!ended); ++evaluation)
+    step_open_lanes(frame, t, curvature, ended);
+  t = ended ? t : V{} + __builtin_nan("");
+  EllipsePlace<V> place = place_along(frame, p.x, p.y, t);
+  const MaskOf<V> settled = is_settled(place, curvature);
+  if (any_of(!settled)) place = settled_place(frame, p.x, p.y, t, settled);
+  const MaskOf<V> deep = !is_shallow(p, place.overlap);
+  if (any_of(deep)) place = searched_where(deep, p, place);
+  return place;
 }
 
 }  // namespace

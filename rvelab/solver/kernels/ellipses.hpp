@@ -20,7 +20,8 @@ namespace {
 struct EllipseScratch {
   ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i; then the branch
   ScratchColumn spin_i, spin_j;
-  ScratchColumn matrix_i[4], matrix_j[4], determinant_i, determinant_j;
+  ScratchColumn squared, form_i[3], form_j[3];  ///< BranchFrame
+  ScratchColumn tangent, curvature, ended, deepest;
   ScratchColumn nx, ny, overlap;
   ScratchColumn reach_i, reach_j;  ///< h
   ScratchColumn turn_i, turn_j;    ///< h' - f'/2
@@ -34,158 +35,173 @@ inline __attribute__((always_inline)) EllipseMatrix<V> matrix_from(const V& xx, 
   return {xx + 1e-100, xy, yy + 1e-100, sharpest};
 }
 
-/// Grain rows to columns.
+template <class V>
+inline __attribute__((always_inline)) void put_form(ScratchColumn* to, long k, const SquaredSupport<V>& s) {
+  store_as(to[0].at + k, s.along);
+  store_as(to[1].at + k, s.mixed);
+  store_as(to[2].at + k, s.across);
+}
+template <class V>
+inline __attribute__((always_inline)) BranchFrame<V> frame_in(const EllipseScratch& s, long k) {
+  const auto form = [&](const ScratchColumn* m) {
+    return SquaredSupport<V>{load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k)};
+  };
+  return {load_as<V>(s.squared.at + k), form(s.form_i), form(s.form_j)};
+}
+
+template <class V, int W>
+inline __attribute__((always_inline)) EllipseMatrix<V> matrix_of(const typename Lanes<W>::Quad* quads) {
+  V m[4];
+  Lanes<W>::transpose(quads, m);
+  return matrix_from(m[0], m[1], m[2], m[3]);
+}
+
+/// Grain rows to columns: places, motion, and the pair in the frame of its branch, with its first direction.
 template <class T>
-inline __attribute__((always_inline)) void ellipse_rows(const PairArrays& p, const double* rows, long first, long count,
-                                                        EllipseScratch& out) {
-  constexpr int W = T::W < 4 ? T::W : 4;
-  using V = typename Lanes<W>::V;
+inline __attribute__((always_inline)) void ellipse_rows(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                        long first, long count, EllipseScratch& s) {
+  constexpr int W = T::W;
+  using L = Lanes<W>;
+  using V = typename L::V;
+  using Quad = typename L::Quad;
   for (long k = 0; k < count; k += W) {
-    std::int32_t i[W], j[W];
-    for (int lane = 0; lane < W; ++lane) i[lane] = p.row_i[first + k + lane], j[lane] = p.row_j[first + k + lane];
-    motion_to_columns<T, W>(rows, i, j, k, out);
-    for (int side = 0; side < 2; ++side) {
-      V m[4];
-      const std::int32_t* grain = side == 0 ? i : j;
-      ScratchColumn* matrix = side == 0 ? out.matrix_i : out.matrix_j;
-      ColumnsOf<W>::load([=](int lane) { return rows + grain[lane] + 8; }, m);
-      const EllipseMatrix<V> of_grain = matrix_from(m[0], m[1], m[2], m[3]);
-      store_as(matrix[0].at + k, of_grain.xx);
-      store_as(matrix[1].at + k, of_grain.xy);
-      store_as(matrix[2].at + k, of_grain.yy);
-      store_as(matrix[3].at + k, of_grain.sharpest);
+    const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
+    Quad difference[W], of_i[W], of_j[W];
+    for (int lane = 0; lane < W; ++lane) {
+      const double *const row_i = rows + i[lane], *const row_j = rows + j[lane];
+      difference[lane] = L::sub(quad_at<W>(row_j), quad_at<W>(row_i));
+      of_i[lane] = quad_at<W>(row_i + 8);
+      of_j[lane] = quad_at<W>(row_j + 8);
+      if constexpr (T::Advance || T::Dashpot) {
+        s.spin_i.at[k + lane] = row_i[4];
+        s.spin_j.at[k + lane] = row_j[4];
+      }
     }
+    V d[4];
+    L::transpose(difference, d);
+    if constexpr (T::Advance || T::Dashpot) {
+      store_as(s.du.at + k, d[2]);
+      store_as(s.dv.at + k, d[3]);
+    }
+    EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+    add_image_in_plane(c, p, first + k, pair.x, pair.y);
+    store_as(s.dx.at + k, pair.x);
+    store_as(s.dy.at + k, pair.y);
+    const BranchFrame<V> frame = branch_frame(pair);
+    store_as(s.squared.at + k, frame.squared);
+    put_form(s.form_i, k, frame.i);
+    put_form(s.form_j, k, frame.j);
+    store_as(s.deepest.at + k, pair.i.sharpest + pair.j.sharpest);
+    store_as(s.tangent.at + k, first_tangent(frame));
   }
 }
 
+/// Steps of W pairs; whether some have not ended.
 template <class V>
-inline __attribute__((always_inline)) EllipsePair<V> pair_in(const EllipseScratch& s, long k) {
-  const auto matrix = [&](const ScratchColumn* m) {
-    return EllipseMatrix<V>{load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k),
-                            load_as<V>(m[3].at + k)};
-  };
-  return {load_as<V>(s.dx.at + k), load_as<V>(s.dy.at + k), matrix(s.matrix_i), matrix(s.matrix_j)};
-}
-
-template <class V>
-inline __attribute__((always_inline)) void put_direction(EllipseScratch& s, long k, Direction<V> n) {
-  store_as(s.nx.at + k, n.x);
-  store_as(s.ny.at + k, n.y);
-}
-template <class V>
-inline __attribute__((always_inline)) Direction<V> direction_in(const EllipseScratch& s, long k) {
-  return {load_as<V>(s.nx.at + k), load_as<V>(s.ny.at + k)};
-}
-
-template <class V>
-inline __attribute__((always_inline)) void put_gap(EllipseScratch& s, long k, const EllipseGap<V>& g) {
-  const V half_slope = 0.5 * g.slope;
-  store_as(s.overlap.at + k, g.overlap);
-  store_as(s.reach_i.at + k, g.support_i);
-  store_as(s.reach_j.at + k, g.support_j);
-  store_as(s.turn_i.at + k, g.turned_i - half_slope);
-  store_as(s.turn_j.at + k, g.turned_j - half_slope);
-}
-
-/// f of W pairs at their directions, which turn where it is not least yet; whether one does. `evaluation`: the first
-/// one turns them in any case; after the last, what has not ended is put down as too deep for steps.
-template <class V>
-inline __attribute__((always_inline)) bool turn_downhill(EllipseScratch& s, long k, int evaluation) {
-  const EllipsePair<V> pair = pair_in<V>(s, k);
-  Direction<V> n = direction_in<V>(s, k);
-  const V det_i = load_as<V>(s.determinant_i.at + k), det_j = load_as<V>(s.determinant_j.at + k);
-  EllipseGap<V> gap = ellipse_gap(pair, n, det_i, det_j);
-  if (evaluation == 1) {
-    put_direction(s, k, next_direction(n, gap));
-    return true;
+inline __attribute__((always_inline)) bool first_step(EllipseScratch& s, long k) {
+  const V t = load_as<V>(s.tangent.at + k);
+  const TangentStep<V> step = tangent_step(frame_in<V>(s, k), t);
+  store_as(s.curvature.at + k, step.curvature);
+  if (!any_of(!step.near)) {
+    store_as(s.tangent.at + k, step.next);
+    return false;
   }
-  const auto open = is_open(gap);
-  if (evaluation < halley_steps && any_of(open)) {
-    const Direction<V> next = next_direction(n, gap);
-    put_direction(s, k, Direction<V>{open ? next.x : n.x, open ? next.y : n.y});
-    return true;
-  }
-  turn_to_least(pair, n, gap);
-  const V infinite = V{} + __builtin_inf();
-  gap.overlap = open ? infinite : gap.overlap;
-  put_direction(s, k, n);
-  put_gap(s, k, gap);
-  return false;
+  const MaskOf<V> ended = step.near | step.apart;
+  store_as(s.tangent.at + k, (step.apart & !step.near) ? t : step.next);
+  store_as(s.ended.at + k, ended ? V{} + 1.0 : V{});
+  return any_of(!ended);
 }
-
-/// Leaves to the search what the steps did not end or what is too deep for them.
 template <class V>
-__attribute__((noinline)) void search_block(EllipseScratch& s, long k) {
-  const EllipsePair<V> pair = pair_in<V>(s, k);
-  Direction<V> n = direction_in<V>(s, k);
-  const V overlap = load_as<V>(s.overlap.at + k);
-  const auto deep = overlap > pair.i.sharpest + pair.j.sharpest;
-  search_lanes(deep, pair, n);
-  put_direction(s, k, n);
-  const EllipseGap<V> found = ellipse_gap(pair, n);
-  const V half_slope = 0.5 * found.slope;
-  const auto put = [&](ScratchColumn& column, V value) {
-    store_as(column.at + k, deep ? value : load_as<V>(column.at + k));
-  };
-  put(s.overlap, found.overlap);
-  put(s.reach_i, found.support_i);
-  put(s.reach_j, found.support_j);
-  put(s.turn_i, found.turned_i - half_slope);
-  put(s.turn_j, found.turned_j - half_slope);
+__attribute__((noinline)) bool further_step(EllipseScratch& s, long k, bool last) {
+  V t = load_as<V>(s.tangent.at + k), curvature = load_as<V>(s.curvature.at + k);
+  MaskOf<V> ended = load_as<V>(s.ended.at + k) > 0.5;
+  step_open_lanes(frame_in<V>(s, k), t, curvature, ended);
+  store_as(s.tangent.at + k, (last && any_of(!ended)) ? (ended ? t : V{} + __builtin_nan("")) : t);
+  store_as(s.curvature.at + k, curvature);
+  store_as(s.ended.at + k, ended ? V{} + 1.0 : V{});
+  return !last && any_of(!ended);
 }
 
-/// What closest_gap finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
+/// What closest_place finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
 /// time of another's, where each to its end left the processor waiting (a sub-step takes 0.82 of that time with eight
 /// lanes, 0.77 with four).
 template <class T>
-inline __attribute__((always_inline)) void ellipse_normals(const StepConstants& c, const PairArrays& p, long first,
-                                                           long count, EllipseScratch& s) {
+inline __attribute__((always_inline)) void ellipse_directions(long count, EllipseScratch& s) {
   using V = typename Lanes<T::W>::V;
-  for (long k = 0; k < count; k += T::W) {
-    EllipsePair<V> pair = pair_in<V>(s, k);
-    if (p.shifted[std::size_t(first + k) / 8]) {
-      add_image_in_plane(c, p, first + k, pair.x, pair.y);
-      store_as(s.dx.at + k, pair.x);
-      store_as(s.dy.at + k, pair.y);
-    }
-    store_as(s.determinant_i.at + k, determinant(pair.i));
-    store_as(s.determinant_j.at + k, determinant(pair.j));
-    put_direction(s, k, first_direction(pair));
-  }
-  for (long k = 0; k < count; k += T::W) turn_downhill<V>(s, k, 1);
   long blocks[chunk_pairs / T::W], open = 0;
   for (long k = 0; k < count; k += T::W) {
     blocks[open] = k;
-    open += turn_downhill<V>(s, k, 2);
+    open += first_step<V>(s, k);
   }
-  for (int evaluation = 3; open > 0; ++evaluation) {
+  for (int evaluation = 2; open > 0; ++evaluation) {
     const long all = open;
     open = 0;
     for (long block = 0; block < all; ++block) {
       const long k = blocks[block];
-      if (turn_downhill<V>(s, k, evaluation)) blocks[open++] = k;
+      if (further_step<V>(s, k, evaluation == halley_steps)) blocks[open++] = k;
     }
   }
 }
 
+/// The pair along its direction, to columns, with the motion of the centres.
+template <class T, class V>
+inline __attribute__((always_inline)) void put_place(const StepConstants& c, const EllipsePlace<V>& place, V x, V y,
+                                                     long k, EllipseScratch& s) {
+  const V half_slope = 0.5 * place.slope;
+  store_as(s.nx.at + k, place.n.x);
+  store_as(s.ny.at + k, place.n.y);
+  store_as(s.overlap.at + k, place.overlap);
+  store_as(s.reach_i.at + k, place.support_i);
+  store_as(s.reach_j.at + k, place.support_j);
+  store_as(s.turn_i.at + k, place.turned_i - half_slope);
+  store_as(s.turn_j.at + k, place.turned_j - half_slope);
+  if constexpr (T::Advance || T::Dashpot) {
+    const double half_dt = 0.5 * c.dt;
+    const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
+    const V px = x - half_dt * du, py = y - half_dt * dv;
+    const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
+    store_as(s.along.at + k, place.n.x * vy - place.n.y * vx);
+    if constexpr (T::Dashpot) store_as(s.opening.at + k, place.n.x * vx + place.n.y * vy);
+  }
+}
+
+/// The same of pairs that take a step more or are too deep for steps. Seldom, and so not inlined.
+template <class T>
+__attribute__((noinline)) void put_far_place(const StepConstants& c, const PairArrays& p, const double* rows,
+                                             long first, long k, EllipseScratch& s) {
+  constexpr int W = T::W;
+  using V = typename Lanes<W>::V;
+  const long at = first + k;
+  const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k), t = load_as<V>(s.tangent.at + k);
+  const BranchFrame<V> frame = frame_in<V>(s, k);
+  EllipsePlace<V> place = place_along(frame, x, y, t);
+  const MaskOf<V> settled = is_settled(place, load_as<V>(s.curvature.at + k));
+  if (any_of(!settled)) place = settled_place(frame, x, y, t, settled);
+  typename Lanes<W>::Quad of_i[W], of_j[W];
+  for (int lane = 0; lane < W; ++lane) {
+    of_i[lane] = quad_at<W>(rows + p.row_i[at + lane] + 8);
+    of_j[lane] = quad_at<W>(rows + p.row_j[at + lane] + 8);
+  }
+  const EllipsePair<V> pair = {x, y, matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+  const MaskOf<V> deep = !is_shallow(pair, place.overlap);
+  if (any_of(deep)) place = searched_where(deep, pair, place);
+  put_place<T>(c, place, x, y, k, s);
+}
+
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
 template <class T>
-__attribute__((noinline)) void ellipse_places(const StepConstants& c, const PairArrays& p, long first, long count,
-                                              EllipseScratch& s) {
+__attribute__((noinline)) void ellipse_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                              long first, long count, EllipseScratch& s) {
   using V = typename Lanes<T::W>::V;
-  const double half_dt = 0.5 * c.dt;
-  ellipse_normals<T>(c, p, first, count, s);
+  ellipse_rows<T>(c, p, rows, first, count, s);
+  ellipse_directions<T>(count, s);
   for (long k = 0; k < count; k += T::W) {
-    const V deepest = load_as<V>(s.matrix_i[3].at + k) + load_as<V>(s.matrix_j[3].at + k);
-    if (any_of(load_as<V>(s.overlap.at + k) > deepest)) search_block<V>(s, k);
-    if constexpr (T::Advance || T::Dashpot) {
-      const Direction<V> n = direction_in<V>(s, k);
-      const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
-      const V px = load_as<V>(s.dx.at + k) - half_dt * du, py = load_as<V>(s.dy.at + k) - half_dt * dv;
-      const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
-      store_as(s.along.at + k, n.x * vy - n.y * vx);
-      if constexpr (T::Dashpot) store_as(s.opening.at + k, n.x * vx + n.y * vy);
-    }
+    const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k);
+    const EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, load_as<V>(s.tangent.at + k));
+    put_place<T>(c, place, x, y, k, s);
+    const MaskOf<V> found =
+        is_settled(place, load_as<V>(s.curvature.at + k)) & (place.overlap <= load_as<V>(s.deepest.at + k));
+    if (any_of(!found)) put_far_place<T>(c, p, rows, first, k, s);
   }
 }
 
@@ -198,8 +214,7 @@ void ellipse_pair_places(const StepConstants& c, const PairArrays& p, const doub
   EllipseScratch s;
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    ellipse_rows<T>(p, rows, first, count, s);
-    ellipse_places<T>(c, p, first, count, s);
+    ellipse_places<T>(c, p, rows, first, count, s);
     for (long k = 0; k < count; k += W) {
       const V near[4] = {load_as<V>(s.nx.at + k), load_as<V>(s.ny.at + k), load_as<V>(s.overlap.at + k),
                          load_as<V>(s.reach_i.at + k)},
@@ -222,34 +237,27 @@ struct EllipseRows {
   static constexpr int length = Ellipse::row_length;
   static constexpr bool turns = true;
 
-  /// `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
-  template <class T, class Fastest>
-  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first,
-                                                         long count, const DiscColumns& s, Fastest& fastest) {
-    constexpr int W = T::W;
-    using V = typename Lanes<W>::V;
-    const double half_dt = 0.5 * c.dt, cell_spin = c.spin[2];
-    for (long k = 0; k < count; k += W) {
-      double* row = g.rows + length * (first + k);
-      V a[4];
-      columns_of<W>(row + 4, length, a);
-      const V x = a[1], y = a[2], axes_gap = a[3];
-      const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
-      const V w = load_as<V>(s.w.at + k) + cell_spin, u = load_as<V>(s.u.at + k), v = load_as<V>(s.v.at + k);
-      const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(w), squared = speed * speed;
-      fastest = (squared > fastest) ? squared : fastest;
-      const V q = half_dt * w;
-      const V inverse = 1.0 / (1.0 + q * q), cosine = (1.0 - q * q) * inverse, sine = (q + q) * inverse;
-      const V tx = cosine * x - sine * y, ty = cosine * y + sine * x;
-      const V shorter = 1.5 - 0.5 * (tx * tx + ty * ty);
-      const Direction<V> e = {tx * shorter, ty * shorter};
-      const V minor = load_as<V>(g.turn_first + first + k), difference = load_as<V>(g.turn_second + first + k);
-      const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, sharpest);
-      const V spin_and_axis[4] = {load_as<V>(s.w.at + k), e.x, e.y, axes_gap},
-              matrix[4] = {m.xx, m.xy, m.yy, m.sharpest};
-      rows_of<W>(spin_and_axis, row + 4, length);
-      rows_of<W>(matrix, row + 8, length);
-    }
+  /// Of W grains from `first` on, which move with u, v, w. `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
+  template <int W, class V>
+  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first, V u,
+                                                         V v, V w, const V (&a)[4], V& fastest) {
+    double* row = g.rows + length * first;
+    const double half_dt = 0.5 * c.dt;
+    const V x = a[1], y = a[2], axes_gap = a[3];
+    const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
+    const V spin = w + c.spin[2];
+    const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(spin), squared = speed * speed;
+    fastest = (squared > fastest) ? squared : fastest;
+    const V q = half_dt * spin;
+    const V inverse = 1.0 / (1.0 + q * q), cosine = (1.0 - q * q) * inverse, sine = (q + q) * inverse;
+    const V tx = cosine * x - sine * y, ty = cosine * y + sine * x;
+    const V shorter = 1.5 - 0.5 * (tx * tx + ty * ty);
+    const Direction<V> e = {tx * shorter, ty * shorter};
+    const V minor = load_as<V>(g.turn_first + first), difference = load_as<V>(g.turn_second + first);
+    const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, sharpest);
+    const V spin_and_axis[4] = {w, e.x, e.y, axes_gap}, matrix[4] = {m.xx, m.xy, m.yy, m.sharpest};
+    rows_of<W>(spin_and_axis, row + 4, length);
+    rows_of<W>(matrix, row + 8, length);
   }
 };
 
@@ -262,8 +270,7 @@ struct Ellipses {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    ellipse_rows<T>(p, rows, first, count, s);
-    ellipse_places<T>(c, p, first, count, s);
+    ellipse_places<T>(c, p, rows, first, count, s);
   }
   template <class T>
   static inline __attribute__((always_inline)) auto contact(const StepConstants& c, const PairArrays& p, long at,

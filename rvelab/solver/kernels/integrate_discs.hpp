@@ -10,7 +10,7 @@ namespace {
 /// What the passes over a chunk of discs hand on.
 struct DiscColumns {
   ScratchColumn fx, fy, torque;  ///< resultants
-  ScratchColumn x, y, u, v, w;
+  ScratchColumn x, y, u, v;
   ScratchColumn px, py, factor;  ///< velocity half a step ahead, and how much of it local damping takes off the force
 };
 
@@ -85,13 +85,14 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
 }
 
 /// Local damping; velocities and places after the step, to the rows.
-template <class T, int length, bool turns>
+template <class T, class Rows>
 inline __attribute__((always_inline)) void move_discs(const StepConstants& c, const GrainArrays& g, long first,
                                                       long count, DiscColumns& s, PartialSums<T::W>* momentum,
                                                       typename Lanes<T::W>::V& fastest,
                                                       PartialSums<T::W>& lost_locally) {
   constexpr int W = T::W;
   using V = typename Lanes<W>::V;
+  constexpr int length = Rows::length;
   const double half_dt = 0.5 * c.dt;
   for (long eight = 0; eight < count; eight += 8)
 #pragma GCC unroll 2
@@ -101,7 +102,14 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
       V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
       V u = load_as<V>(s.u.at + k), v = load_as<V>(s.v.at + k);
       double* row = g.rows + length * at;
-      V w = Lanes<W>::collected([=](int lane) { return row[length * lane + 4]; });
+      [[maybe_unused]] V spin_and_axis[4];
+      V w;
+      if constexpr (Rows::turns) {
+        columns_of<W>(row + 4, length, spin_and_axis);
+        w = spin_and_axis[0];
+      } else {
+        w = Lanes<W>::collected([=](int lane) { return row[length * lane + 4]; });
+      }
       if constexpr (T::damping != KernelDamping::none) {
         [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
         const V px = load_as<V>(s.px.at + k), py = load_as<V>(s.py.at + k);
@@ -133,20 +141,21 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
       const V mass = load_as<V>(g.mass + at);
       momentum[0].add(part, mass * u);
       momentum[1].add(part, mass * v);
-      const V squared = u * u + v * v;
-      fastest = (squared > fastest) ? squared : fastest;
+      if constexpr (!Rows::turns) {
+        const V squared = u * u + v * v;
+        fastest = (squared > fastest) ? squared : fastest;
+      }
       const V x = load_as<V>(s.x.at + k), y = load_as<V>(s.y.at + k);
       const V to[4] = {(c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v),
                        c.map.yy * y + c.velocity_map.yy * v, u, v};
       rows_of<W>(to, row, length);
-      double spins[W];
-      std::memcpy(spins, &w, sizeof(V));
+      if constexpr (Rows::turns) {
+        Rows::template turn<W>(c, g, at, u, v, w, spin_and_axis, fastest);
+      } else {
+        double spins[W];
+        std::memcpy(spins, &w, sizeof(V));
 #pragma GCC unroll 8
-      for (int lane = 0; lane < W; ++lane) row[length * lane + 4] = spins[lane];
-      if constexpr (turns) {
-        store_as(s.u.at + k, u);
-        store_as(s.v.at + k, v);
-        store_as(s.w.at + k, w);
+        for (int lane = 0; lane < W; ++lane) row[length * lane + 4] = spins[lane];
       }
     }
 }
@@ -168,7 +177,6 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
   const PairArrays p = pairs;
   PartialSums<W> momentum[2], lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
-  [[maybe_unused]] typename Lanes<W>::V fastest_with_turn = {};
   DiscColumns s;
   TaskRows task_sums;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
@@ -179,13 +187,12 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
       damp_discs<T, Rows::length, false>(c, g, chunk, count, task_sums, s, lost_globally);
     else
       damp_discs<T, Rows::length, true>(c, g, chunk, count, task_sums, s, lost_globally);
-    move_discs<T, Rows::length, Rows::turns>(c, g, chunk, count, s, momentum, fastest, lost_locally);
-    if constexpr (Rows::turns) Rows::template turn<T>(c, g, chunk, count, s, fastest_with_turn);
+    move_discs<T, Rows>(c, g, chunk, count, s, momentum, fastest, lost_locally);
   }
   sums->momentum[0] = momentum[0].total();
   sums->momentum[1] = momentum[1].total();
   sums->momentum[2] = 0;
-  sums->largest_speed_squared = Rows::turns ? largest_of(fastest_with_turn) : largest_of(fastest);
+  sums->largest_speed_squared = largest_of(fastest);
   sums->local_damping = lost_locally.total();
   sums->global_damping = lost_globally.total();
 }

@@ -76,7 +76,10 @@ double target_ratio_of_start(State& state, double elastic_change, double factor)
 }
 
 double error_factor_of_start(const State& state) {
-  return error_per_unbalance_of_start(state.model().rolling_constraint_factor * state.control().constraint_ratio);
+  const Model& model = state.model();
+  const bool clumps = model.bodies != nullptr && !moves_as_body(model.shape);
+  return (clumps ? clump_factor_of_start : 1) *
+         error_per_unbalance_of_start(model.rolling_constraint_factor * state.control().constraint_ratio);
 }
 
 double factor_of_last_start(const State& state) {
