@@ -127,13 +127,17 @@ struct EllipsoidStep {
   Triple<V> next() const { return turned_by(then, further); }
 };
 template <class V>
+struct SeenOfPair<EllipsoidPair<V>> {
+  using Type = EllipsoidStep<V>;
+};
+template <class V>
 inline __attribute__((always_inline)) V rolling_of(const EllipsoidPair<V>& pair) {
   return pair.i.rolling + pair.j.rolling;
 }
 template <class V>
-inline __attribute__((always_inline)) EllipsoidStep<V> evaluated(const EllipsoidPair<V>& pair, const Triple<V>& n) {
+inline __attribute__((always_inline)) void evaluate(const EllipsoidPair<V>& pair, const Triple<V>& n,
+                                                    EllipsoidStep<V>& step) {
   const EllipsoidMatrix<V>&mi = pair.i, &mj = pair.j;
-  EllipsoidStep<V> step;
   step.along = n;
   const EllipsoidAt<V> i = ellipsoid_at(mi, n), j = ellipsoid_at(mj, n);
   step.height = i.height + j.height;
@@ -163,12 +167,13 @@ inline __attribute__((always_inline)) EllipsoidStep<V> evaluated(const Ellipsoid
   step.there = (step.i.height + step.j.height) - dot(step.then, pair.branch);
   step.downhill = slope(step.i, step.j, step.there, step.then);
   step.further = turn_of(step.downhill);
-  return step;
 }
 /// Nothing is flat: Newton's step is good from afar.
 template <class V>
 inline __attribute__((always_inline)) Triple<V> far_direction(const EllipsoidPair<V>& pair, const Triple<V>& n) {
-  return turned_by(n, evaluated(pair, n).by);
+  EllipsoidStep<V> step;
+  evaluate(pair, n, step);
+  return turned_by(n, step.by);
 }
 /// Aspects of 1:10, many times over.
 template <class V>
@@ -179,7 +184,7 @@ template <class V>
 inline __attribute__((always_inline)) auto place_of(const EllipsoidPair<V>& pair, const Triple<V>& n,
                                                     const EllipsoidStep<V>& step) {
   const V s = V{} + widest_place, turn = most_of(step.by), error = turn * (90.0 * turn) + noise_of(pair);
-  GridPlace<V, decltype(s < turn)> place = {rounded_to(n, s), s < turn, s < 0.0};
+  GridPlace<V, decltype(s < turn)> place = {rounded_to(n, s), s, s < turn, s < 0.0};
   place.sure = most_of(plus(n, V{} - 1.0, place.at)) + error < 0.5 * s;
   return place;
 }
@@ -202,16 +207,16 @@ __attribute__((noinline)) void from_bodies(const EllipsoidPair<V>& pair, Contact
                                            const Search& search) {
   next = first_direction(pair);
   const auto led = led_from(pair, next, superellipsoid_steps);
-  contacts = contacts_by(pair, led.at);
-  contacts.overlap = led.apart ? V{} - 1.0 : contacts.overlap;
-  const decltype(V{} < 0.0) left = !(led.apart | led.final);
+  contacts = contacts_by(pair, led.seen);
+  contacts.overlap = led.look.apart ? V{} - 1.0 : contacts.overlap;
+  const decltype(V{} < 0.0) left = !(led.look.apart | led.look.final);
   if (!any_of(left)) return;
   ask_search(left, contacts, [&](int lane) {
     const ContactsOf<double> found = search(lane);
     const EllipsoidPair<double> one = {in_lane(pair.i, lane), in_lane(pair.j, lane), in_lane(pair.branch, lane)};
     Triple<double> place = found.n;
     const auto last = led_from(one, place, 3);
-    return last.final ? contacts_by(one, last.at) : found;
+    return last.look.final ? contacts_by(one, last.seen) : found;
   });
   next = chosen(left, contacts.n, next);
 }
@@ -224,9 +229,9 @@ inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const EllipsoidP
   const Mask none = dot(guess, guess) < 0.25;
   if (any_of(none)) guess = chosen(none, first_direction(pair), guess);
   const auto led = led_from(pair, guess, steps_from_guess);
-  ContactsOf<V> contacts = contacts_by(pair, led.at);
-  contacts.overlap = led.apart ? V{} - 1.0 : contacts.overlap;
-  const Mask left = !(led.apart | led.final);
+  ContactsOf<V> contacts = contacts_by(pair, led.seen);
+  contacts.overlap = led.look.apart ? V{} - 1.0 : contacts.overlap;
+  const Mask left = !(led.look.apart | led.look.final);
   if (any_of(left)) {
     ContactsOf<V> others;
     Triple<V> next;

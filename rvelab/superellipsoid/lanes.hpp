@@ -70,6 +70,15 @@ struct OverlapAndStep {
   V reach() const { return step.reach; }
   Triple<V> next() const { return turned_by(at.n, step.plain); }
 };
+/// What is seen of a pair along a direction.
+template <class Pair>
+struct SeenOfPair;
+template <class V>
+struct SeenOfPair<SuperellipsoidPair<V>> {
+  using Type = OverlapAndStep<V>;
+};
+template <class Pair>
+using SeenOf = typename SeenOfPair<Pair>::Type;
 template <class V>
 inline __attribute__((always_inline)) V rolling_of(const SuperellipsoidPair<V>& pair) {
   return pair.form_i.rolling + pair.form_j.rolling;
@@ -80,11 +89,10 @@ inline __attribute__((always_inline)) V noise_of(const SuperellipsoidPair<V>& pa
   return 8e-15 + 2e-15 * (size_of(pair) / rolling_of(pair));
 }
 template <class V>
-inline __attribute__((always_inline)) OverlapAndStep<V> evaluated(const SuperellipsoidPair<V>& pair,
-                                                                  const Triple<V>& n) {
-  OverlapAndStep<V> there = {overlap_at(pair, n), {}};
-  there.step = plain_step(there.at, modes_of(there.at), rolling_of(pair));
-  return there;
+inline __attribute__((always_inline)) void evaluate(const SuperellipsoidPair<V>& pair, const Triple<V>& n,
+                                                    OverlapAndStep<V>& there) {
+  overlap_at(pair, n, there.at);
+  plain_step(there.at, modes_of(there.at), rolling_of(pair), there.step);
 }
 /// The direction after n where Newton's step would lead astray. Seldom, and so not inlined.
 template <class V>
@@ -132,6 +140,7 @@ inline __attribute__((always_inline)) Triple<V> rounded_to(const Triple<V>& n, V
 template <class V, class Mask>
 struct GridPlace {
   Triple<V> at;
+  V edge;           ///< s
   Mask sure, flat;  ///< beyond the error of the step that led there
 };
 /// Of n, to which a step led.
@@ -152,49 +161,58 @@ inline __attribute__((always_inline)) auto place_of(const SuperellipsoidPair<V>&
   };
   const V low = power_of_2(u - error), high = power_of_2(u + error);
   const V s = place_over_component * low;
-  GridPlace<V, decltype(u < low)> place = {rounded_to(n, s), u < low, u + error < flat_component};
+  GridPlace<V, decltype(u < low)> place = {rounded_to(n, s), s, u < low, u + error < flat_component};
   place.sure =
       (most_of(plus(n, V{} - 1.0, place.at)) + error < 0.5 * s) & (low == high) & (u - error >= flat_component);
   return place;
 }
 
 /// What is seen from a direction: whether f is least in its place; whether it shows that the pair is apart; else
-/// whether to go on.
-template <class At, class Mask>
+/// whether to go on. The edge of the place to which it leads.
+template <class V, class Mask>
 struct Look {
-  At at;
   Mask final, apart, going;
+  V edge;
 };
-/// From `place`, which goes on where the look is not the last. `decided`: the look before was sure of it.
-template <class Pair, class V, class Mask>
-inline __attribute__((always_inline)) auto look_from(const Pair& pair, Triple<V>& place, Mask& decided) {
+/// From `place`, along which the pair is `seen`; it goes on where the look is not the last. `decided`: the look before
+/// was sure of it.
+template <class Pair, class Seen, class V, class Mask>
+inline __attribute__((always_inline)) Look<V, Mask> judged(const Pair& pair, const Seen& seen, Triple<V>& place,
+                                                           Mask& decided) {
   const V rolling = rolling_of(pair);
-  Look<decltype(evaluated(pair, place)), Mask> look;
-  look.at = evaluated(pair, of_length_1(place));
-  const auto& at = look.at;
-  look.apart = (at.overlap() < -1e-12 * at.heights()) | (rolling < 1e-25);  // pairs that pad a chunk have no size
-  const Mask near = (at.reach() <= known_reach) & (dot(at.turn(), at.turn()) <= known_turn);
-  Triple<V> next = at.next();
-  const auto found = place_of(pair, next, at);
+  Look<V, Mask> look;
+  look.apart = (seen.overlap() < -1e-12 * seen.heights()) | (rolling < 1e-25);  // pairs that pad a chunk have no size
+  const Mask near = (seen.reach() <= known_reach) & (dot(seen.turn(), seen.turn()) <= known_turn);
+  Triple<V> next = seen.next();
+  const auto found = place_of(pair, next, seen);
+  look.edge = found.edge;
   const Mask stays = (found.at.x == place.x) & (found.at.y == place.y) & (found.at.z == place.z);
-  look.final = near & (at.overlap() <= 0.5 * rolling) & (decided | (found.sure & stays));
+  look.final = near & (seen.overlap() <= 0.5 * rolling) & (decided | (found.sure & stays));
   const Mask open = !(look.final | look.apart), sure = near & found.sure;
-  const Mask far = open & (!((at.reach() <= 0.5) & (dot(at.turn(), at.turn()) <= 0.01)));
+  const Mask far = open & (!((seen.reach() <= 0.5) & (dot(seen.turn(), seen.turn()) <= 0.01)));
   look.going = open & !(near & found.flat);
   if (!any_of(look.going)) return look;
-  if (any_of(far)) next = chosen(!far, next, far_direction(pair, at.n()));
+  if (any_of(far)) next = chosen(!far, next, far_direction(pair, seen.n()));
   place = chosen(look.going, chosen(sure, found.at, next), place);
   decided = (look.going & sure) | (decided & (!look.going));
   return look;
 }
 
 /// Looks from a direction on, until no lane goes on.
+template <class Seen, class Look>
+struct Led {
+  Seen seen;
+  Look look;
+};
 template <class Pair, class V>
 inline __attribute__((always_inline)) auto led_from(const Pair& pair, Triple<V>& place, int steps) {
   decltype(V{} < 0.0) decided = V{} < 0.0;
-  auto look = look_from(pair, place, decided);
-  for (int k = 0; k < steps && any_of(look.going); ++k) look = look_from(pair, place, decided);
-  return look;
+  Led<SeenOf<Pair>, Look<V, decltype(decided)>> led;
+  for (int k = 0;; ++k) {
+    evaluate(pair, of_length_1(place), led.seen);
+    led.look = judged(pair, led.seen, place, decided);
+    if (k == steps || !any_of(led.look.going)) return led;
+  }
 }
 
 template <class Mask, class V>
@@ -207,7 +225,7 @@ inline ContactsOf<double> searched_contact(const OverlapPair& pair) {
   const SuperellipsoidContact found = contact_of(pair);
   Triple<double> place = found.n;
   const auto last = led_from(pair, place, 3);
-  if (last.final) return contacts_by(pair, last.at);
+  if (last.look.final) return contacts_by(pair, last.seen);
   return {found.overlap, found.n, found.point};
 }
 
@@ -220,12 +238,12 @@ __attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, Co
   const V rolling = rolling_of(pair), size = size_of(pair);
   next = first_direction(pair);
   const auto led = led_from(pair, next, superellipsoid_steps);
-  contacts = contacts_by(pair, led.at);
-  contacts.overlap = led.apart ? V{} - rolling : contacts.overlap;
-  Mask left = !(led.apart | led.final);
+  contacts = contacts_by(pair, led.seen);
+  contacts.overlap = led.look.apart ? V{} - rolling : contacts.overlap;
+  Mask left = !(led.look.apart | led.look.final);
   if (!any_of(left)) return;
   // Flat on flat, or deep, or astray.
-  OverlapAt<V> at = led.at.at;
+  OverlapAt<V> at = led.seen.at;
   OverlapStep<V> step = next_step(at, rolling);
   Mask settled = is_near_least(step, 1e-6) | is_least(at, step, size), going = left & !settled;
   for (int k = 0; k < superellipsoid_steps && any_of(going); ++k) {
@@ -237,8 +255,8 @@ __attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, Co
   Triple<V> place = at.n;
   const auto last = led_from(pair, place, 3);
   const ContactsOf<V> by_steps = contacts_by(pair, OverlapAndStep<V>{at, step});
-  contacts = chosen(left, chosen(last.final, contacts_by(pair, last.at), by_steps), contacts);
-  next = chosen(left, chosen(last.final, place, at.n), next);
+  contacts = chosen(left, chosen(last.look.final, contacts_by(pair, last.seen), by_steps), contacts);
+  next = chosen(left, chosen(last.look.final, place, at.n), next);
   left = left & !(settled & (at.overlap <= rolling));
   if (!any_of(left)) return;
   ask_search(left, contacts, [&](int lane) {
@@ -265,9 +283,9 @@ inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const Superellip
   }
   guess = chosen(guessed, guess, Triple<V>{one, zero, zero});
   const auto led = led_from(pair, guess, steps_from_guess);
-  ContactsOf<V> contacts = contacts_by(pair, led.at);
-  contacts.overlap = led.apart ? zero - one : contacts.overlap;
-  const Mask left = !(led.apart | (guessed & led.final));
+  ContactsOf<V> contacts = contacts_by(pair, led.seen);
+  contacts.overlap = led.look.apart ? zero - one : contacts.overlap;
+  const Mask left = !(led.look.apart | (guessed & led.look.final));
   if (any_of(left)) {
     ContactsOf<V> others;
     Triple<V> next;

@@ -36,16 +36,21 @@ struct OverlapAt {
 };
 
 template <class V>
-inline __attribute__((always_inline)) OverlapAt<V> overlap_at(const SuperellipsoidPair<V>& pair, const Triple<V>& n) {
-  OverlapAt<V> at;
+inline __attribute__((always_inline)) void overlap_at(const SuperellipsoidPair<V>& pair, const Triple<V>& n,
+                                                      OverlapAt<V>& at) {
   at.n = n;
-  at.i = support_at(pair.form_i, pair.axes_i, n);
-  at.j = support_at(pair.form_j, pair.axes_j, Triple<V>{-n.x, -n.y, -n.z});
+  support_at(pair.form_i, pair.axes_i, n, at.i);
+  support_at(pair.form_j, pair.axes_j, Triple<V>{-n.x, -n.y, -n.z}, at.j);
   const V minus = V{} - 1.0;
   const Triple<V> apart = plus(plus(pair.branch, V{} + 1.0, at.j.point), minus, at.i.point);
   at.overlap = (at.i.height + at.j.height) - dot(n, pair.branch);
   at.downhill = plus(apart, at.overlap, n);
   at.downhill = plus(at.downhill, -dot(at.downhill, n), n);
+}
+template <class V>
+inline __attribute__((always_inline)) OverlapAt<V> overlap_at(const SuperellipsoidPair<V>& pair, const Triple<V>& n) {
+  OverlapAt<V> at;
+  overlap_at(pair, n, at);
   return at;
 }
 
@@ -138,9 +143,8 @@ struct PlainStep {
 /// det = sum k_m k_l A_ml^2 - s (sum k U.U - s), A_ml = U_m.V_l. So a mode without bound beside others loses none of
 /// them, nor its own s_m = U_m.y = (sum k_l A_ml (V_l.F) - s U_m.F)/det.
 template <class V>
-inline __attribute__((always_inline)) PlainStep<V> plain_step(const OverlapAt<V>& at, const Modes<V>& modes,
-                                                              V rolling) {
-  PlainStep<V> step;
+inline __attribute__((always_inline)) void plain_step(const OverlapAt<V>& at, const Modes<V>& modes, V rolling,
+                                                      PlainStep<V>& step) {
   const V most = 0.9 * rolling;  // C is not below the rolling radii
   step.shift = (at.overlap < most) ? at.overlap : most;
   Triple<V> first, second;
@@ -175,7 +179,6 @@ inline __attribute__((always_inline)) PlainStep<V> plain_step(const OverlapAt<V>
     step.reach = larger_of(step.reach, reach);
     step.farthest = larger_of(step.farthest, modes.share[m] * reach);
   }
-  return step;
 }
 
 /// The same in the frame of the stiffest mode, slower: beside flat sides it loses none of n to rounding (a pair of
@@ -210,7 +213,11 @@ template <bool InFrame = false, class V>
 inline __attribute__((always_inline)) OverlapStep<V> next_step(const OverlapAt<V>& at, V rolling) {
   const V one = V{} + 1.0;
   Modes<V> modes = modes_of(at);
-  OverlapStep<V> step = {InFrame ? plain_step_in_frame(at, modes, rolling) : plain_step(at, modes, rolling), {}};
+  OverlapStep<V> step;
+  if constexpr (InFrame)
+    static_cast<PlainStep<V>&>(step) = plain_step_in_frame(at, modes, rolling);
+  else
+    plain_step(at, modes, rolling, step);
   V followed[4];
   for (int m = 0; m < 4; ++m) {
     const V relative = (modes.growth[m] * modes.share[m]) * step.s[m];

@@ -87,9 +87,11 @@ inline __attribute__((always_inline)) V with_sign(V v, V of) {
   return (of < 0.0) ? -v : v;
 }
 
+/// `at` is filled where it stands: what is so long is copied else.
 template <class V>
-inline __attribute__((always_inline)) SupportAt<V> support_at(const SuperellipsoidForm<V>& form,
-                                                              const SuperellipsoidAxes<V>& axes, const Triple<V>& m) {
+inline __attribute__((always_inline)) void support_at(const SuperellipsoidForm<V>& form,
+                                                      const SuperellipsoidAxes<V>& axes, const Triple<V>& m,
+                                                      SupportAt<V>& at) {
   const Triple<V> own = in_frame(axes, m);
   // Where an axis is across m, modes have no bound or, at the poles, no direction: there they are those of 1e-60 beside
   // it.
@@ -101,7 +103,6 @@ inline __attribute__((always_inline)) SupportAt<V> support_at(const Superellipso
   const DualNorm<V> z = dual_norm(xy.value, pz, form.share_z, form.root_z);
   const Triple<V> signed_half = {with_sign(form.half.x, own.x), with_sign(form.half.y, own.y),
                                  with_sign(form.half.z, own.z)};
-  SupportAt<V> at;
   at.height = z.value;
   const V sx = signed_half.x * xy.by_u, sy = signed_half.y * xy.by_v;
   at.point = in_world(axes, Triple<V>{(all.x > 0.0) ? sx * z.by_u : zero, (all.y > 0.0) ? sy * z.by_u : zero,
@@ -110,6 +111,12 @@ inline __attribute__((always_inline)) SupportAt<V> support_at(const Superellipso
            form.share_xy};
   at.z = {z.stiffness, in_world(axes, Triple<V>{pz * sx, pz * sy, -(xy.value * signed_half.z)}), z.growth,
           form.share_z};
+}
+template <class V>
+inline __attribute__((always_inline)) SupportAt<V> support_at(const SuperellipsoidForm<V>& form,
+                                                              const SuperellipsoidAxes<V>& axes, const Triple<V>& m) {
+  SupportAt<V> at;
+  support_at(form, axes, m, at);
   return at;
 }
 

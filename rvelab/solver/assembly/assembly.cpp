@@ -226,6 +226,7 @@ PairArrays arrays_of(PairTable& t) {
   p.radius_j = t.radius_j.data();
   p.force = t.force.data();
   p.solid = t.solid.data();
+  p.directions = t.directions.data();
   return p;
 }
 

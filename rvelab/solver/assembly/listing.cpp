@@ -82,15 +82,17 @@ void arrange(const Model& model, const Assembly& assembly, const std::vector<Lis
 /// image nor frame matters here: those of a pair of grains, in the order of (i, j).
 struct KeptDirection {
   std::int32_t i, j;
-  double at[3];
+  double at[8];
 };
 std::vector<KeptDirection> directions_in(const PairTable& pairs) {
   std::vector<KeptDirection> kept;
-  if (pairs.solid.empty()) return kept;
+  if (pairs.directions.empty()) return kept;
   for (const std::int32_t listed : pairs.order) {
     const auto p = std::size_t(listed);
-    const double* at = pairs.solid.data() + 8 * p;
-    if (at[0] != 0 || at[1] != 0 || at[2] != 0) kept.push_back({pairs.i[p], pairs.j[p], {at[0], at[1], at[2]}});
+    const double* at = pairs.directions.data() + 8 * p;
+    if (at[0] == 0 && at[1] == 0 && at[2] == 0) continue;
+    kept.push_back({pairs.i[p], pairs.j[p], {}});
+    std::copy_n(at, 8, kept.back().at);
   }
   return kept;
 }
@@ -101,7 +103,7 @@ void put_directions(const std::vector<KeptDirection>& kept, PairTable& pairs) {
     const auto pair = std::pair(pairs.i[p], pairs.j[p]);
     while (k < kept.size() && std::pair(kept[k].i, kept[k].j) < pair) ++k;
     if (k < kept.size() && std::pair(kept[k].i, kept[k].j) == pair)
-      std::copy_n(kept[k].at, 3, pairs.solid.data() + 8 * p);
+      std::copy_n(kept[k].at, 8, pairs.directions.data() + 8 * p);
   }
 }
 

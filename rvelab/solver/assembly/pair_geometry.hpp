@@ -106,7 +106,7 @@ void PairPlaces<shape>::find(const Model& model, const Assembly& assembly) {
   pairs.row_j = assembly.pairs.row_j.data();
   for (int k = 0; k < dimension_of(shape); ++k) pairs.image[k] = assembly.pairs.image_number[k].data();
   pairs.shifted = assembly.pairs.shifted.data();
-  pairs.solid = const_cast<double*>(assembly.pairs.solid.data());  // read alone
+  pairs.directions = const_cast<double*>(assembly.pairs.directions.data());  // read alone
   const PlaceKernel find_places = model.kernels_at(assembly.state.last_step.loading).places;
   in_pieces(padded, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     find_places(c, pairs, assembly.rows.data(), long(first), long(last), places_.get());

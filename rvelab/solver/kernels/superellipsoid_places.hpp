@@ -117,10 +117,18 @@ inline __attribute__((always_inline)) EllipsoidPair<V> ellipsoids_of(const Super
   return {ellipsoid_matrix(pair.form_i.half, pair.axes_i), ellipsoid_matrix(pair.form_j.half, pair.axes_j),
           pair.branch};
 }
-template <class Pair, class Look>
-inline __attribute__((always_inline)) auto contacts_seen(const Pair& pair, const Look& look) {
-  auto contacts = contacts_by(pair, look.at);
-  contacts.overlap = look.apart ? contacts.overlap * 0.0 - 1.0 : contacts.overlap;
+/// As the steps take it.
+template <bool Ellipsoids, class V>
+inline __attribute__((always_inline)) auto searched_pair(const SuperellipsoidPair<V>& pair) {
+  if constexpr (Ellipsoids)
+    return ellipsoids_of(pair);
+  else
+    return pair;
+}
+template <class Pair, class At, class Mask>
+inline __attribute__((always_inline)) auto contacts_seen(const Pair& pair, const At& at, const Mask& apart) {
+  auto contacts = contacts_by(pair, at);
+  contacts.overlap = apart ? contacts.overlap * 0.0 - 1.0 : contacts.overlap;
   return contacts;
 }
 
@@ -142,47 +150,67 @@ struct PairNumbers {
   }
 };
 
-/// Branch, normal, overlap and arms, block by block. Not inlined: it is long, and the same for every law.
-template <int W>
-__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
-    s.branch.store(k, pair.branch);
-    V row[4];
-    columns_of<W>(solid + 8 * k, 8, row);
-    Triple<V> guess = {row[0], row[1], row[2]};
-    put_contacts<W>(pair.branch, contacts_of(pair, guess), k, s);
-    const V next[4] = {guess.x, guess.y, guess.z, V{}};
-    rows_of<W>(next, solid + 8 * k, 8);
+/// Where a pair is looked for first the next time: where its direction goes on as it went since the last, in a place
+/// of the grid. `kept`: rows of eight (PairArrays::directions).
+template <class V>
+struct KeptDirections {
+  Triple<V> place, last;
+
+  /// Of a contact along n; `edge`: of its place.
+  inline __attribute__((always_inline)) void go_on(const Triple<V>& n, V edge) {
+    const auto known = dot(last, last) > 0.25;
+    const Triple<V> next = plus(plus(n, V{} + 1.0, n), V{} - 1.0, last);
+    place = rounded_to(chosen(known, next, n), edge);
+    last = n;
   }
+};
+template <int W, class RowOf>
+inline __attribute__((always_inline)) KeptDirections<typename Lanes<W>::V> directions_of(const RowOf& row) {
+  typename Lanes<W>::V place[4], last[4];
+  ColumnsOf<W>::load([&](int lane) { return row(lane); }, place);
+  ColumnsOf<W>::load([&](int lane) { return row(lane) + 4; }, last);
+  return {{place[0], place[1], place[2]}, {last[0], last[1], last[2]}};
 }
 
-/// The same of ellipsoids. Each pair is looked at from its kept direction, and goes on in groups with others
+/// Branch, normal, overlap and arms. Each pair is looked at from its kept direction, and goes on in groups with others
 /// until it is done: one that is in its place costs one look, whatever those beside it do. The kept directions stand in
-/// rows of eight at `solid`. Not inlined: it is long, and the same for every law.
-template <int W>
-__attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                long first, long count, double* solid, SuperellipsoidScratch& s) {
+/// rows of eight at `directions`. Not inlined: it is long, and the same for every law.
+template <int W, bool Ellipsoids>
+__attribute__((noinline)) void superellipsoid_places(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                     long first, long count, double* directions,
+                                                     SuperellipsoidScratch& s) {
   using V = typename Lanes<W>::V;
   using Mask = decltype(V{} < 0.0);
+  const Triple<V> zero = {V{}, V{}, V{}};
   PairNumbers open, left;
   double decided[chunk_pairs];
+  // What a look leaves: where to look next, this time or the next.
+  const auto kept_after = [&](const auto& look, const ContactsOf<V>& contacts, const Triple<V>& place,
+                              KeptDirections<V>& kept) {
+    KeptDirections<V> done = kept;
+    done.go_on(contacts.n, look.edge);
+    kept.place = chosen(look.final, done.place, place);
+    kept.last = chosen(look.final, done.last, chosen(look.apart, zero, kept.last));
+  };
   for (long k = 0; k < count; k += W) {
     const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, first + k);
     s.branch.store(k, pair.branch);
-    V row[4];
-    columns_of<W>(solid + 8 * k, 8, row);
-    Triple<V> place = {row[0], row[1], row[2]};
+    KeptDirections<V> kept = directions_of<W>([=](int lane) { return directions + 8 * (k + lane); });
+    Triple<V> place = kept.place;
     const Mask none = dot(place, place) < 0.25;
     if (any_of(none)) place = chosen(none, Triple<V>{V{} + 1.0, V{}, V{}}, place);
     Mask sure = V{} < 0.0;
-    const auto both = ellipsoids_of(pair);
-    const auto look = look_from(both, place, sure);
-    put_contacts<W>(pair.branch, contacts_seen(both, look), k, s);
-    const V next[4] = {place.x, place.y, place.z, V{}};
-    rows_of<W>(next, solid + 8 * k, 8);
+    const auto both = searched_pair<Ellipsoids>(pair);
+    SeenOf<std::remove_const_t<decltype(both)>> seen;
+    evaluate(both, of_length_1(place), seen);
+    const auto look = judged(both, seen, place, sure);
+    const ContactsOf<V> contacts = contacts_seen(both, seen, look.apart);
+    put_contacts<W>(pair.branch, contacts, k, s);
+    kept_after(look, contacts, place, kept);
+    const V next[4] = {kept.place.x, kept.place.y, kept.place.z, V{}},
+            last[4] = {kept.last.x, kept.last.y, kept.last.z, V{}};
+    rows_of<W>(next, directions + 8 * k, 8);
+    rows_of<W>(last, directions + 8 * k + 4, 8);
     store_as(decided + k, sure ? V{} + 1.0 : V{});
     const Mask going = look.going & (!none), lost = (look.going & none) | (!(look.final | look.apart | look.going));
     open.template add<W>(going, [=](int lane) { return k + lane; });
@@ -197,17 +225,16 @@ __attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const Pa
                                      of_j = columns_of_shapes<W>(rows, group.j);
       const Triple<V> branch = group.template column<V>(s.branch);
       const SuperellipsoidPair<V> pair = {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch};
-      V row[4];
-      ColumnsOf<W>::load([&](int lane) { return solid + 8 * group.k[lane]; }, row);
-      Triple<V> place = {row[0], row[1], row[2]};
-      const ContactsOf<V> contacts = work(group, pair, place, from);
+      KeptDirections<V> kept = directions_of<W>([&](int lane) { return directions + 8 * group.k[lane]; });
+      const ContactsOf<V> contacts = work(group, pair, kept, from);
       for (int lane = 0; lane < W; ++lane) {
-        double* kept = solid + 8 * group.k[lane];
-        kept[0] = in_lane(place.x, lane), kept[1] = in_lane(place.y, lane), kept[2] = in_lane(place.z, lane);
+        double* row = directions + 8 * group.k[lane];
+        row[0] = in_lane(kept.place.x, lane), row[1] = in_lane(kept.place.y, lane);
+        row[2] = in_lane(kept.place.z, lane), row[4] = in_lane(kept.last.x, lane);
+        row[5] = in_lane(kept.last.y, lane), row[6] = in_lane(kept.last.z, lane);
         s.overlap.at[group.k[lane]] = in_lane(contacts.overlap, lane);
       }
       const Mask touch = contacts.overlap > 0.0;
-      const Triple<V> zero = {V{}, V{}, V{}};
       group.put(contacts.n, s.normal);
       group.put(chosen(touch, contacts.point, zero), s.arm_i);
       group.put(chosen(touch, plus(contacts.point, V{} - 1.0, branch), zero), s.arm_j);
@@ -216,26 +243,37 @@ __attribute__((noinline)) void ellipsoid_places(const StepConstants& c, const Pa
   for (int k = 0; k < steps_from_guess && open.count > 0; ++k) {
     const PairNumbers now = open;
     open.count = 0;
-    in_groups(now, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long from) {
-      Mask sure = Lanes<W>::collected([&](int lane) { return decided[group.k[lane]]; }) > 0.5;
-      const auto both = ellipsoids_of(pair);
-      const auto look = look_from(both, place, sure);
-      const V held = sure ? V{} + 1.0 : V{};
-      for (int lane = 0; lane < W; ++lane) decided[group.k[lane]] = in_lane(held, lane);
-      const long here = now.count - from;
-      const V number = Lanes<W>::collected([](int lane) { return double(lane); });
-      const Mask counts = number < double(here), going = look.going & counts,
-                 lost = (!(look.final | look.apart | look.going)) & counts;
-      open.template add<W>(going, [&](int lane) { return group.k[lane]; });
-      left.template add<W>(lost, [&](int lane) { return group.k[lane]; });
-      return contacts_seen(both, look);
-    });
+    in_groups(now,
+              [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, KeptDirections<V>& kept, long from) {
+                Mask sure = Lanes<W>::collected([&](int lane) { return decided[group.k[lane]]; }) > 0.5;
+                const auto both = searched_pair<Ellipsoids>(pair);
+                Triple<V> place = kept.place;
+                SeenOf<std::remove_const_t<decltype(both)>> seen;
+                evaluate(both, of_length_1(place), seen);
+                const auto look = judged(both, seen, place, sure);
+                const V held = sure ? V{} + 1.0 : V{};
+                for (int lane = 0; lane < W; ++lane) decided[group.k[lane]] = in_lane(held, lane);
+                const long here = now.count - from;
+                const V number = Lanes<W>::collected([](int lane) { return double(lane); });
+                const Mask counts = number < double(here), going = look.going & counts,
+                           lost = (!(look.final | look.apart | look.going)) & counts;
+                open.template add<W>(going, [&](int lane) { return group.k[lane]; });
+                left.template add<W>(lost, [&](int lane) { return group.k[lane]; });
+                const ContactsOf<V> contacts = contacts_seen(both, seen, look.apart);
+                kept_after(look, contacts, place, kept);
+                return contacts;
+              });
   }
   for (long k = 0; k < open.count; ++k) left.at[left.count++] = open.at[k];
-  in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, Triple<V>& place, long) {
+  in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, KeptDirections<V>& kept, long) {
     ContactsOf<V> contacts;
-    from_bodies(ellipsoids_of(pair), contacts, place,
-                [&](int lane) { return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane])); });
+    if constexpr (Ellipsoids)
+      from_bodies(ellipsoids_of(pair), contacts, kept.place, [&](int lane) {
+        return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane]));
+      });
+    else
+      from_bodies(pair, contacts, kept.place);
+    kept.last = zero;
     return contacts;
   });
 }
@@ -262,11 +300,9 @@ __attribute__((noinline)) void hertz_radii(const StepConstants& c, const PairArr
 /// What the kernels ask for: places, and R* where it is that of the curvature.
 template <int W, bool Ellipsoids, bool Curvature>
 inline __attribute__((always_inline)) void places_of(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                     long first, long count, double* solid, SuperellipsoidScratch& s) {
-  if constexpr (Ellipsoids)
-    ellipsoid_places<W>(c, p, rows, first, count, solid, s);
-  else
-    superellipsoid_places<W>(c, p, rows, first, count, solid, s);
+                                                     long first, long count, double* directions,
+                                                     SuperellipsoidScratch& s) {
+  superellipsoid_places<W, Ellipsoids>(c, p, rows, first, count, directions, s);
   if constexpr (Curvature) hertz_radii<W, Ellipsoids>(c, p, rows, first, count, s);
 }
 

@@ -22,7 +22,7 @@ void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, con
   double guesses[8 * chunk_pairs];  // not kept: threads may look at one pair together
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    for (long k = 0; k < 8 * count; ++k) guesses[k] = p.solid[8 * first + k];
+    for (long k = 0; k < 8 * count; ++k) guesses[k] = p.directions[8 * first + k];
     places_of<W, Ellipsoids, Curvature>(c, p, rows, first, count, guesses, s);
     for (long k = 0; k < count; k += W) {
       const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
@@ -44,7 +44,7 @@ struct SuperellipsoidPairs {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    places_of<T::W, Ellipsoids, T::Curvature>(c, p, rows, first, count, p.solid + 8 * first, s);
+    places_of<T::W, Ellipsoids, T::Curvature>(c, p, rows, first, count, p.directions + 8 * first, s);
   }
   /// R*/r*.
   template <class V>
@@ -120,7 +120,7 @@ __attribute__((noinline)) bool SuperellipsoidPairs<Ellipsoids>::may_touch(const 
       if (any_of(!(heights - dot(n, pair.branch) < -1e-12 * heights))) return true;
     } else {
       V guess[4];
-      columns_of<W>(p.solid + 8 * at, 8, guess);
+      columns_of<W>(p.directions + 8 * at, 8, guess);
       const Triple<V> kept = {guess[0], guess[1], guess[2]};
       const auto has = dot(kept, kept) >= 0.25;
       const OverlapAt<V> along = overlap_at(pair, chosen(has, kept, of_length_1(pair.branch)));
