@@ -1,8 +1,9 @@
 """tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB [NUMBER [SPECIMENS]]
 
-Solid fraction and mechanical coordination number beside what is published. Without friction a random packing of
-frictionless grains with all their rotations has Z up to 12, of spheres 6; ellipsoids near spheres are hypostatic (Donev et
-al. 2007, Phys. Rev. E 75)."""
+Solid fraction and mechanical coordination number beside what is published. Without friction a random packing has as many
+contacts as its grains have degrees of freedom, two a contact: Z is 6 of spheres, at most 10 of spheroids and 12 of ellipsoids;
+near spheres they are hypostatic (Donev et al. 2007, Phys. Rev. E 75). Spheres that do not slide: 4. The grains are pressed,
+and have a little more."""
 import collections
 import csv
 import json
@@ -11,48 +12,65 @@ import subprocess
 import sys
 import tempfile
 
-program, number, specimens = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 120, \
-    int(sys.argv[3]) if len(sys.argv) > 3 else 2
-shapes = [("spheres", [1, 1, 1], "0.64, 6"),
-          ("1.25 : 1 : 0.8", [1.25, 1, 0.8], "0.735, 10 to 12 (Donev et al. 2004)"),
-          ("1 : 1 : 0.6", [1, 1, 0.6], "0.68 to 0.71, about 10 (spheroids, Donev et al. 2004)"),
-          ("2 : 1 : 1", [2, 1, 1], "0.68 to 0.71, about 10 (spheroids, Donev et al. 2004)")]
+from verdict import tell_verdicts, verdict
+
+program, number, specimens = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 200, \
+    int(sys.argv[3]) if len(sys.argv) > 3 else 5
+# Half axes, friction, solid fraction and Z as published.
+shapes = [("spheres", [1, 1, 1], 0, (0.64, 0.64), (6, 6)),
+          ("spheres that do not slide", [1, 1, 1], 100, None, (4, 4)),
+          ("1.25 : 1 : 0.8 (Donev et al. 2004)", [1.25, 1, 0.8], 0, (0.735, 0.735), (10, 12)),
+          ("1 : 1 : 0.6 (Donev et al. 2004)", [1, 1, 0.6], 0, (0.68, 0.71), (10, 10)),
+          ("2 : 1 : 1 (Donev et al. 2004)", [2, 1, 1], 0, (0.68, 0.71), (10, 10))]
 
 
-def skeleton(path):
-    """Contacts a grain of those that have four at least, counted among themselves."""
+def skeleton(path, least):
+    """Contacts a grain of those that have `least` at least, counted among themselves."""
     with open(path, encoding="utf-8") as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
         pairs = [(row["id1"], row["id2"]) for row in rows]
     while True:
         counts = collections.Counter(grain for pair in pairs for grain in pair)
-        kept = [pair for pair in pairs if min(counts[grain] for grain in pair) >= 4]
+        kept = [pair for pair in pairs if min(counts[grain] for grain in pair) >= least]
         if len(kept) == len(pairs):
             return 2 * len(pairs) / len(counts)
         pairs = kept
 
 
-print(f"{number} grains of one size, friction 0, {specimens} specimens of each; 100 kPa of 7 GPa")
-print("half axes | solid fraction | Z of the skeleton | published")
-for name, half, published in shapes:
-    fractions, contacts = [], []
-    for seed in range(1, specimens + 1):
-        with tempfile.TemporaryDirectory() as folder:
-            sets = ["pack.number=" + str(number), "pack.seed=" + str(seed), "grains.half_axes=" + str(half),
-                    "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=0",
-                    "material.quartz.friction=0", "target.pressure_Pa=1e5", "target.unbalanced=1e-3", "target.stress_tolerance=1e-2"]
-            arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5"]
-            for each in sets:
-                arguments += ["--set", each]
-            made = subprocess.run(arguments, capture_output=True, text=True)
-            if made.returncode != 0:
-                sys.exit(made.stderr)
-            state = json.loads(subprocess.run([program, "inspect", folder + "/s.h5", "--json"], capture_output=True,
-                                              text=True, check=True).stdout)
-            fractions.append(1 / (1 + state["void_ratio"]))
-            subprocess.run([program, "export", folder + "/s.h5", "--format", "csv", "-o", folder + "/s"],
-                           capture_output=True, check=True)
-            contacts.append(skeleton(folder + "/s.contacts.csv"))
-    spread = statistics.stdev(fractions) if specimens > 1 else float("nan")
-    print(f"{name} | {statistics.mean(fractions):.3f} +- {spread:.3f} | {statistics.mean(contacts):.2f} | {published}",
-          flush=True)
+def packed(half, friction, seed, folder):
+    """Solid fraction and contacts a grain of one packing."""
+    sets = ["pack.number=" + str(number), "pack.seed=" + str(seed), "grains.half_axes=" + str(half),
+            "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=" + str(friction),
+            "material.quartz.friction=" + str(friction), "target.pressure_Pa=1e5", "target.unbalanced=1e-3",
+            "target.stress_tolerance=1e-2"]
+    arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5"]
+    for each in sets:
+        arguments += ["--set", each]
+    made = subprocess.run(arguments, capture_output=True, text=True)
+    if made.returncode != 0:
+        sys.exit(made.stderr)
+    state = json.loads(subprocess.run([program, "inspect", folder + "/s.h5", "--json"], capture_output=True,
+                                      text=True, check=True).stdout)
+    subprocess.run([program, "export", folder + "/s.h5", "--format", "csv", "-o", folder + "/s"],
+                   capture_output=True, check=True)
+    return 1 / (1 + state["void_ratio"]), skeleton(folder + "/s.contacts.csv", 2 if friction else 4)
+
+
+def between(value, bounds, below, above):
+    return bounds[0] - below <= value <= bounds[1] + above
+
+
+def span(bounds, below, above):
+    return f"{bounds[0]:g}" + (f" to {bounds[1]:g}" if bounds[1] > bounds[0] else "") + (
+        f" +- {below:g}" if below == above else f" - {below:g} + {above:g}")
+
+
+print(f"{number} grains of one size, {specimens} specimens of each; 100 kPa of 7 GPa; mean +- standard deviation")
+for name, half, friction, fraction, Z in shapes:
+    with tempfile.TemporaryDirectory() as folder:
+        fractions, contacts = zip(*(packed(half, friction, seed, folder) for seed in range(1, specimens + 1)))
+    for what, values, asked, room in (("solid fraction", fractions, fraction, (0.01, 0.01)), ("Z of the skeleton", contacts, Z, (0.2, 0.6))):
+        if asked:
+            verdict(f"{name}: {what}", f"{statistics.mean(values):.3f} +- {statistics.stdev(values):.3f}", span(asked, *room),
+                    between(statistics.mean(values), asked, *room))
+tell_verdicts()
