@@ -43,7 +43,7 @@ def packed(half, friction, seed, folder):
             "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=" + str(friction),
             "material.quartz.friction=" + str(friction), "target.pressure_Pa=1e5", "target.unbalanced=1e-3",
             "target.stress_tolerance=1e-2"]
-    arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5"]
+    arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5", "--force"]
     for each in sets:
         arguments += ["--set", each]
     made = subprocess.run(arguments, capture_output=True, text=True)
