@@ -43,17 +43,18 @@ def packed(half, friction, seed, folder):
             "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=" + str(friction),
             "material.quartz.friction=" + str(friction), "target.pressure_Pa=1e5", "target.unbalanced=1e-3",
             "target.stress_tolerance=1e-2"]
-    arguments = [program, "pack", "pack_ellipsoids", "-o", folder + "/s.h5", "--force"]
+    file = f"{folder}/{seed}"
+    arguments = [program, "pack", "pack_ellipsoids", "-o", file + ".h5"]
     for each in sets:
         arguments += ["--set", each]
     made = subprocess.run(arguments, capture_output=True, text=True)
     if made.returncode != 0:
         sys.exit(made.stderr)
-    state = json.loads(subprocess.run([program, "inspect", folder + "/s.h5", "--json"], capture_output=True,
+    state = json.loads(subprocess.run([program, "inspect", file + ".h5", "--json"], capture_output=True,
                                       text=True, check=True).stdout)
-    subprocess.run([program, "export", folder + "/s.h5", "--format", "csv", "-o", folder + "/s"],
+    subprocess.run([program, "export", file + ".h5", "--format", "csv", "-o", file],
                    capture_output=True, check=True)
-    return 1 / (1 + state["void_ratio"]), skeleton(folder + "/s.contacts.csv", 2 if friction else 4)
+    return 1 / (1 + state["void_ratio"]), skeleton(file + ".contacts.csv", 2 if friction else 4)
 
 
 def between(value, bounds, below, above):
