@@ -41,6 +41,12 @@ inline void set_loading(pack::Recipe& r) {
   r.stress = pack::isotropic_stress(pressure, r.shape);
 }
 
+/// Whose middle is mean_radius. `ratio`: smallest over largest.
+inline void set_radii(Grading& grading, double ratio) {
+  grading.smallest_radius = 2 * mean_radius / (1 + 1 / ratio);
+  grading.largest_radius = grading.smallest_radius / ratio;
+}
+
 inline Drawn drawn_recipe(std::uint64_t seed) {
   Random random(seed, 0);
   Drawn d;
@@ -98,8 +104,7 @@ inline Drawn drawn_kind(std::uint64_t seed) {
   d.ratio = kind == 1 ? 0.25 : random(0.4, 0.6);
   Grading& grading = r.fractions[0].grading;
   grading.curve = kind == 1 ? GradingCurve::linear : GradingCurve::uniform;
-  grading.smallest_radius = 2 * mean_radius / (1 + 1 / d.ratio);
-  grading.largest_radius = grading.smallest_radius / d.ratio;
+  set_radii(grading, d.ratio);
   if (kind == 3) {
     r.fractions[0].smallest_aspect_ratio = random(0.5, 0.7);
     r.fractions[0].largest_aspect_ratio = 0.9;
@@ -140,8 +145,7 @@ inline Drawn drawn_interacting(std::uint64_t seed) {
   r.thickness = thickness;
   d.ratio = random(0.4, 0.7);
   Grading& grading = r.fractions[0].grading;
-  grading.smallest_radius = 2 * mean_radius / (1 + 1 / d.ratio);
-  grading.largest_radius = grading.smallest_radius / d.ratio;
+  set_radii(grading, d.ratio);
   Material& m = r.materials[0];
   d.friction = m.friction = random(0.3, 0.6);
   d.kappa = random.power(2.7, 3.5);
@@ -177,8 +181,7 @@ inline Drawn drawn_shape(std::uint64_t seed) {
   r.thickness = thickness;
   d.ratio = random(0.4, 0.8);
   Grading& grading = r.fractions[0].grading;
-  grading.smallest_radius = 2 * mean_radius / (1 + 1 / d.ratio);
-  grading.largest_radius = grading.smallest_radius / d.ratio;
+  set_radii(grading, d.ratio);
   if (r.clumps) {
     std::vector<Clump> library;
     const int dimension = dimension_of(r.shape);
