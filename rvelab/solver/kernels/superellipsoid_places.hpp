@@ -151,7 +151,7 @@ struct PairNumbers {
 };
 
 /// Where a pair is looked for first the next time: where its direction goes on as it went since the last, in a place
-/// of the grid. `kept`: rows of eight (PairArrays::directions).
+/// of the grid. `last`: its direction now, of length 1, 0 where it has none (PairArrays::directions).
 template <class V>
 struct KeptDirections {
   Triple<V> place, last;
