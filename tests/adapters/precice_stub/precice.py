@@ -5,6 +5,7 @@ repeated until each relative measure is met or the iterations are used up."""
 from __future__ import annotations
 
 import queue
+import threading
 import xml.etree.ElementTree as xml
 from pathlib import Path
 from typing import Iterable
@@ -37,14 +38,18 @@ class _Scheme:
 
 
 _schemes: dict[str, _Scheme] = {}
+_making = threading.Lock()
 
 
 class Participant:
     WAIT = 60  # s, for the other one
 
     def __init__(self, name: str, config: str, rank: int, size: int) -> None:
-        self._scheme = _schemes.setdefault(str(Path(config).resolve()), None) or _Scheme(config)
-        _schemes[str(Path(config).resolve())] = self._scheme
+        key = str(Path(config).resolve())
+        with _making:  # both participants come at once, and must find one scheme
+            if key not in _schemes:
+                _schemes[key] = _Scheme(config)
+        self._scheme = _schemes[key]
         self._name, self._first = name, name == self._scheme.first
         if name not in self._scheme.to:
             raise ValueError(f"{name} is no participant of {config}")
