@@ -225,7 +225,7 @@ PairArrays arrays_of(PairTable& t) {
   p.radius_i = t.radius_i.data();
   p.radius_j = t.radius_j.data();
   p.force = t.force.data();
-  p.torque_i = t.torque_i.data();
+  p.solid = t.solid.data();
   p.directions = t.directions.data();
   return p;
 }

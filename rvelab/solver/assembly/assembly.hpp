@@ -120,9 +120,8 @@ struct PairTable {
   Buffer image_number[3];
   Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
-  Buffer radius_i, radius_j;                    ///< where the kernels read them by pairs
-  Buffer torque_i;                              ///< superellipsoids (kernels/configuration.hpp), and
-  Buffer directions;                            ///< the directions of their contacts, which are no state
+  Buffer radius_i, radius_j;  ///< where the kernels read them by pairs
+  Buffer solid, directions;   ///< superellipsoids (kernels/configuration.hpp): torques; directions, which are no state
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
   /// `slots` as the grain loop reads them: those of pairs beyond `near` point to a padding pair until one of their

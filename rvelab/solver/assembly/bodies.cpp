@@ -251,11 +251,11 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
 /// The same of bodies of one grain each that is not round: the kernels give force and torques about the centres.
 template <bool Rolling>
 void gather_solids(const PairTable& pairs, Resultant* resultants) {
-  const double *force = pairs.force.data(), *torques = pairs.torque_i.data();
+  const double *force = pairs.force.data(), *solid = pairs.solid.data();
   for (const std::int32_t listed : pairs.order) {
     const auto p = std::size_t(listed);
     if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
-    const double *row = force + 8 * p, *torque_i = torques + 4 * p;
+    const double *row = force + 8 * p, *torque_i = solid + 8 * p + 4;
     Resultant &on_i = resultants[pairs.i[p]], &on_j = resultants[pairs.j[p]];
     for (int k = 0; k < 3; ++k) {
       double m = 0;

@@ -11,7 +11,7 @@ std::size_t bytes_of(const PairTable& t) {
   std::size_t sum = bytes(t.order, t.touched, t.shifted, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots,
                           t.tasks, t.gathered, t.slots_beyond) +
                     bytes(t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force,
-                          t.radius_i, t.radius_j, t.torque_i, t.directions, t.resultants, t.on_members);
+                          t.radius_i, t.radius_j, t.solid, t.directions, t.resultants, t.on_members);
   for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
   for (const InteractionTable& each : t.interactions) {
     sum += bytes(each.i, each.j, each.image, each.row_i, each.row_j);
@@ -75,10 +75,8 @@ void derive_pairs(const Model& model, PairTable& pairs) {
       pairs.radius_j[p] = model.radius[std::size_t(pairs.j[p])];
     }
   });
-  if (moves_as_body(model.shape)) {
-    pairs.torque_i.assign(4 * padded, 0.0);
-    pairs.directions.assign(8 * padded, 0.0);
-  }
+  if (moves_as_body(model.shape))
+    for (Buffer* b : {&pairs.solid, &pairs.directions}) b->assign(8 * padded, 0.0);
   if (model.bodies)
     pairs.on_members.resize(std::size_t(force_row_length(model.dimension())) * padded_to_lanes(model.size()));
   pairs.touched.assign(padded / 8, 0);

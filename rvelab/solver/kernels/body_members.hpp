@@ -23,11 +23,9 @@ inline __attribute__((always_inline)) void gather_solid_forces(const GrainArrays
   for (long block = first / 2; block < (first + count) / 2; ++block) {
     const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
     const double* torque_rows[4];
-    int halved[4];  // rows of eight on j, of four on i
     Quad force[4], torque[4];
     for (int k = 0; k < 4; ++k) {
-      halved[k] = g.tasks[4 * block + k] < 4 * chunk_grains ? 0 : 1;
-      torque_rows[k] = halved[k] == 0 ? p.force + 4 : p.torque_i;
+      torque_rows[k] = (g.tasks[4 * block + k] < 4 * chunk_grains ? p.force : p.solid) + 4;
       force[k] = torque[k] = L::broadcast(0.0);
     }
     double moment[4][4] = {};
@@ -35,7 +33,7 @@ inline __attribute__((always_inline)) void gather_solid_forces(const GrainArrays
 #pragma GCC unroll 4
       for (int k = 0; k < 4; ++k) {
         force[k] = L::add(force[k], quad_at<narrow>(p.force + slot[k]));
-        torque[k] = L::add(torque[k], quad_at<narrow>(torque_rows[k] + (slot[k] >> halved[k])));
+        torque[k] = L::add(torque[k], quad_at<narrow>(torque_rows[k] + slot[k]));
         if constexpr (Rolling)
           for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8];
       }

@@ -80,7 +80,7 @@ struct SuperellipsoidPairs {
     const V opening = dot(n, at_point);
     return {plus(at_point, -opening, n), opening, 0.5 * dot(n, plus(wi, one, wj))};
   }
-  /// Force on j and torque on j; the torque on i stands in PairArrays::torque_i.
+  /// Force on j and torque on j; the torque on i stands in PairArrays::solid.
   template <class T>
   static inline __attribute__((always_inline)) void force_rows(const PairArrays& p, long first, long count,
                                                                const Scratch& s) {
@@ -96,7 +96,7 @@ struct SuperellipsoidPairs {
               torque_i[4] = {on_i.x, on_i.y, on_i.z, V{}};
       rows_of<W>(force, p.force + 8 * at, 8);
       rows_of<W>(torque_j, p.force + 8 * at + 4, 8);
-      rows_of<W>(torque_i, p.torque_i + 4 * at, 4);
+      rows_of<W>(torque_i, p.solid + 8 * at + 4, 8);
     }
   }
   template <int W>

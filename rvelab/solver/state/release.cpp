@@ -14,7 +14,7 @@ template <class Of, class Each>
 void each_working_array(Of& a, const Each& each) {
   auto& t = a.pairs;
   for (auto* buffer : {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i,
-                       &t.radius_j, &t.torque_i, &t.directions, &t.resultants, &t.image_number[0], &t.image_number[1],
+                       &t.radius_j, &t.solid, &t.directions, &t.resultants, &t.image_number[0], &t.image_number[1],
                        &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
     each(*buffer);
   for (auto* list : {&t.row_i, &t.row_j, &t.gathered, &t.slots_beyond}) each(*list);
