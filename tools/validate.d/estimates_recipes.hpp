@@ -168,11 +168,10 @@ constexpr const char* shape_kinds[] = {"clumps of discs", "clumps of spheres", "
 
 /// 50 to 90 bodies of friction 0.2 to 0.6. Clumps: a shape of the library; ellipsoids: aspect ratios of 1 to 2.5;
 /// superellipsoids: exponents of 2 to 5 besides; mixtures: half spheres or discs (clumps of one), half another clump.
-inline Drawn drawn_shape(std::uint64_t seed) {
+inline Drawn drawn_shape(std::uint64_t seed, std::uint64_t kind) {
   Random random(seed, 0);
   Drawn d;
   pack::Recipe& r = d.recipe;
-  const auto kind = seed % 5;
   r.clumps = kind < 2 || kind == 4;
   const bool plane = kind == 0 || (kind == 4 && random.chance(0.5));
   r.shape = plane ? Shape::disc : r.clumps ? Shape::sphere : Shape::superellipsoid;
@@ -216,13 +215,51 @@ inline Drawn drawn_shape(std::uint64_t seed) {
   return d;
 }
 
+/// Seeds from here on: of seven kinds (seed % 7) that an outside check drew. Increments of 1e-6 to 1e-2, and all errors
+/// count, those of chaotic increments too: a user has one calculation, and asks how far it is from a slow one.
+constexpr std::uint64_t first_of_all_errors = 501;
+constexpr const char* drawn_kinds[] = {"loose discs",      "radii 1:4", "overlaps of 1e-4", "ellipses",
+                                       "friction 0.07", "clumps",    "ellipsoids"};
+
+inline Drawn drawn_for_all_errors(std::uint64_t seed) {
+  const auto kind = seed % 7;
+  if (kind >= 5) return drawn_shape(seed, kind == 6 ? 2 : seed % 2);
+  Random random(seed, 0);
+  Drawn d;
+  pack::Recipe& r = d.recipe;
+  r.shape = kind == 3 ? Shape::ellipse : kind == 2 || (kind == 1 && random.chance(0.5)) ? Shape::sphere : Shape::disc;
+  const bool plane = dimension_of(r.shape) == 2;
+  r.seed = seed;
+  r.number = std::size_t(plane ? random(150, 400) : random(120, 250));
+  r.thickness = thickness;
+  d.ratio = kind == 1 ? 0.25 : random(0.4, 0.7);
+  set_radii(r.fractions[0].grading, d.ratio);
+  if (kind == 3) {
+    r.fractions[0].smallest_aspect_ratio = random(0.5, 0.7);
+    r.fractions[0].largest_aspect_ratio = 0.9;
+  }
+  Material& m = r.materials[0];
+  d.friction = m.friction = kind == 4 ? random(0.06, 0.08) : random(0.3, 0.6);
+  d.kappa = kind == 2 ? random.power(3.9, 4) : random.power(2.7, 3.7);
+  r.contact.law = kind == 1 && random.chance(0.5) ? Law::hertz_mindlin : Law::linear_stiffness;
+  m.normal_stiffness = d.kappa * pressure * (plane ? thickness : 2 * mean_radius);
+  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
+  m.poisson_ratio = 0.2;
+  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  set_loading(r);
+  if (kind != 0 && random.chance(0.5)) r.preparation.friction = std::min(m.friction, 0.1);
+  d.ratio = 1 / d.ratio;
+  return d;
+}
+
 inline bool is_interacting(std::uint64_t seed) { return seed >= first_with_interactions && seed < first_of_shapes; }
 
 inline Drawn drawn(std::uint64_t seed) {
   return seed < first_of_kinds            ? drawn_recipe(seed)
          : seed < first_with_interactions ? drawn_kind(seed)
          : seed < first_of_shapes         ? drawn_interacting(seed)
-                                          : drawn_shape(seed);
+         : seed < first_of_all_errors     ? drawn_shape(seed, seed % 5)
+                                          : drawn_for_all_errors(seed);
 }
 
 inline std::string in_words(std::uint64_t seed) {

@@ -36,6 +36,11 @@ double error_per_unbalance_of_start(double constraint_ratio) {
   return firm_factor_of_start + isostatic_factor_of_start / (1 + isostatic_width * beyond * beyond);
 }
 
+double creep_after_relaxation(double constraint_ratio) {
+  const double beyond = std::max(constraint_ratio, 1.0) - 1;
+  return 1 + isostatic_creep / (1 + isostatic_width * beyond * beyond);
+}
+
 double error_growth(double strain, double strain_of_overlap) {
   return std::sqrt(std::sqrt(std::sqrt(std::max(1.0, strain / strain_of_overlap))));
 }

@@ -50,6 +50,9 @@ double error_per_unbalance(double stiffness_ratio, double constraint_ratio, doub
 /// Model::rolling_constraint_factor.
 double error_per_unbalance_of_start(double constraint_ratio);
 
+/// What slow modes still bring after a relaxation, over what its second half brought: 1 + 3/(1 + 70 (c - 1)^2).
+double creep_after_relaxation(double constraint_ratio);
+
 /// max(1, x)^(1/8), x the strain of an increment over the mean overlap over d: a long increment has slid contacts by
 /// what it lagged on its way. Errors of the 24 increments of x = 3 to 9 were up to 1.2 times the estimate without.
 double error_growth(double strain, double strain_of_overlap);

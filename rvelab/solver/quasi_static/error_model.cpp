@@ -185,8 +185,8 @@ void estimate_error(State& state, double allowed, const JudgedIncrement& increme
   judge_tolerance(report);
 }
 
-void add_error_of_path(State& state, double strain, double path_unbalance, Report& report) {
-  const double of_path = std::min(strain / overlap_strain(state), 1.0) * expected_error(state, path_unbalance);
+void add_error_of_path(State& state, double strain, double path_lag, Report& report) {
+  const double of_path = lags_left * std::min(strain / overlap_strain(state), 1.0) * path_lag;
   report.error_estimate = std::sqrt(report.error_estimate * report.error_estimate + of_path * of_path);
   judge_tolerance(report);
 }

@@ -67,11 +67,10 @@ void estimate_error(State& state, double allowed, const JudgedIncrement& increme
 void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& stress_before,
                             const JudgedIncrement& increment, Report& report);
 
-/// Adds the error that lags before the end have left: contacts slid elsewhere than in a slower increment. A lag is gone
-/// after the 50 sub-steps to the next check, so that those of two checks are independent, and the errors
-/// they leave add by their squares, to each other and to that of the end: with `path_unbalance`, the root of the sum of
-/// squares of the unbalanced ratios of the checks before the end, K p times that. Below the strain of the overlaps,
-/// x < 1, forces change by the part x, and about that part of the contacts may slide.
-void add_error_of_path(State& state, double strain, double path_unbalance, Report& report);
+/// Adds the error that lags before the end have left: contacts slid elsewhere than in a slower increment. The parts
+/// between checks are judged each by its own pressure and stiffness ratio, lag K p u, and their errors add by squares,
+/// to each other and to that of the end: lags_left times `path_lag`, Pa, the root of the sum of these squares. Below the
+/// strain of the overlaps, x < 1, forces change by the part x, and about that part of the contacts may slide.
+void add_error_of_path(State& state, double strain, double path_lag, Report& report);
 
 }  // namespace rvelab

@@ -69,8 +69,8 @@ class CheckedSteps {
   }
   bool end_is_checked() const { return end_is_checked_; }
   const InteractionEvents& events() const { return events_; }
-  /// Root of the sum of squares of the unbalanced ratios that the checks before the end found.
-  double path_unbalance() const { return std::sqrt(squares_); }
+  /// Root of the sum of squares of the lags that the checks before the end found, Pa.
+  double path_lag() const { return std::sqrt(squares_); }
 
  private:
   /// Sub-steps until the next check; moves the fraction on.
@@ -107,8 +107,10 @@ class CheckedSteps {
 
   void check() {
     const OutOfBalance balance = check_.check();
-    const double ratio = state_.control().unbalanced_ratio;
-    if (fraction_ < 1) squares_ += ratio * ratio;
+    if (fraction_ < 1) {
+      const double lag = expected_error(state_, state_.control().unbalanced_ratio);
+      squares_ += lag * lag;
+    }
     if (from_rest_) return;
     // Where the fewest steps rule, their strain is not that of the control, but it may still be found too large.
     const bool too_fast = state_.control().unbalanced_ratio > state_.control().target_unbalanced_ratio;
@@ -234,7 +236,7 @@ Report load_quasi_static(State& state, FrameSplit whole, Beginning beginning) {
                                .events = substeps.events().happened(state),
                                .broken_stress = substeps.events().broken_stress(state)};
   estimate_by_tolerances(state, elastic_change, stress_before, judged, report);
-  add_error_of_path(state, strain, substeps.path_unbalance(), report);
+  add_error_of_path(state, strain, substeps.path_lag(), report);
   note_slope(state, whole.stretch, stress_before, (state.cell().rotation.array() == start_frame.array()).all());
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {
     const Matrix3 turned = turned_since(start_frame, state.cell());

@@ -120,7 +120,8 @@ Relaxed relaxed_by(State& state, RelaxedStart& made) {
   Relaxed relaxed;
   if (made.parts() == 0) return relaxed;
   relaxed.steps = long(made.parts()) * part;
-  relaxed.creep = std::max((state.stress() - made.stress[made.parts() / 2]).norm(),
+  relaxed.creep = std::max(creep_after_relaxation(state.control().constraint_ratio) *
+                               (state.stress() - made.stress[made.parts() / 2]).norm(),
                            slow_share * (state.stress() - made.stress[0]).norm());
   if (!state.model().contact.rolling) return relaxed;
   // Grains that roll past each other creep on at nearly the same rate long after the others are at rest.
