@@ -29,6 +29,19 @@ Refusals& refusals() {
   return made;
 }
 
+Components components_of(int direct, int shear, int all, const Material& material, bool gradients) {
+  const bool known = (direct == 3 && (shear == 3 || shear == 1)) || (direct == 2 && shear == 1);
+  if (!known || all != direct + shear)
+    throw std::runtime_error("NDI, NSHR, NTENS are " + std::to_string(direct) + ", " + std::to_string(shear) + ", " +
+                             std::to_string(all) + "; allowed: 3, 3, 6; 3, 1, 4; 2, 1, 3 of a 2D specimen");
+  if (shear == 3 && !gradients && !material.shear_order)
+    throw std::runtime_error(
+        "the host gives no DFGRD0, as Kratos, which has shear in the order 12 23 13; write " +
+        std::string("shear_order = \"kratos\", or \"abaqus\" for 12 13 23, under the [[material]] ") + "in " +
+        points().file());
+  return {direct, shear, material.shear_order.value_or(Components{}.order)};
+}
+
 void read_increment(const double* dstran, const double* dfgrd0, const double* dfgrd1, Call& call) {
   const Matrix3& strain = call.from.strain_increment;
   if (dfgrd0 == nullptr || dfgrd1 == nullptr) {
@@ -134,28 +147,16 @@ void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double
   const rvelab::pool::FloatingPoint standard;
   try {
     remember_folder();
-    Components components{or_zero(ndi), or_zero(nshr)};
-    if (components.size() != or_zero(ntens) ||
-        !((components.direct == 3 && components.shear == 3) || components.shear == 1) || components.direct < 2 ||
-        components.direct > 3)
-      throw std::runtime_error("NDI, NSHR, NTENS are " + std::to_string(components.direct) + ", " +
-                               std::to_string(components.shear) + ", " + std::to_string(or_zero(ntens)) +
-                               "; allowed: 3, 3, 6; 3, 1, 4; 2, 1, 3 of a 2D specimen");
     if (statev == nullptr || or_zero(nstatv) < 2)
       throw std::runtime_error("NSTATV is " + std::to_string(or_zero(nstatv)) +
                                "; give 2 state variables (*DEPVAR): id and token");
-    Call call{stress, statev, ddsdde, pnewdt, components, properties_of(props, or_zero(nprops))};
-    if (const auto& order = points().material(call.properties.material).shear_order)
-      call.components.order = *order;
-    else if (components.shear == 3 && dfgrd0 == nullptr)
-      throw std::runtime_error(
-          "the host gives no DFGRD0, as Kratos, which has shear in the order 12 23 13; write shear_order = \"kratos\", "
-          "or "
-          "\"abaqus\" for 12 13 23, under the [[material]] in " +
-          points().file());
+    const Properties properties = properties_of(props, or_zero(nprops));
+    const Components components = components_of(or_zero(ndi), or_zero(nshr), or_zero(ntens),
+                                                points().material(properties.material), dfgrd0 != nullptr);
+    Call call{stress, statev, ddsdde, pnewdt, components, properties};
     call.from.state = {whole_state(statev[0], "STATEV(1)"), whole_state(statev[1], "STATEV(2)")};
-    if (dstran != nullptr) call.from.strain_increment = strain_of(dstran, call.components);
-    if (stran != nullptr) call.from.strain = strain_of(stran, call.components);
+    if (dstran != nullptr) call.from.strain_increment = strain_of(dstran, components);
+    if (stran != nullptr) call.from.strain = strain_of(stran, components);
     if (time != nullptr) call.from.time = *time;  // some hosts have no second
     if (dtime != nullptr) call.from.dt = *dtime;
     call.drot = drot;
