@@ -54,7 +54,7 @@ TEST_CASE(
     "both precisions") {
   unsetenv("RVELAB_UMAT");
   for (const std::string name :
-       {"discs", "discs_single", "spheres", "spheres_single", "shear", "elastic", "parts", "refused"}) {
+       {"discs", "discs_single", "spheres", "spheres_single", "shear", "round_off", "elastic", "parts", "refused"}) {
     CAPTURE(name);
     const Workplace here;
     prepare(here, name.starts_with("spheres"));

@@ -108,10 +108,12 @@ void write(const Call& call, const Step& step, bool kirchhoff) {
   const bool turns = call.properties.axes == Axes::corotational;
   const Matrix6 tangent = turns ? turned(step.tangent, call.R1) : step.tangent;
   const int n = call.components.size();
+  double stress[6];  // in the axes of the tangent
+  write_stress(turns ? sigma : step.sigma, call.components, stress);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       call.ddsdde[i + n * j] = tangent(call.components.place(i), call.components.place(j));
-      if (kirchhoff && j < call.components.direct) call.ddsdde[i + n * j] += call.stress[i];
+      if (kirchhoff && j < call.components.direct) call.ddsdde[i + n * j] += stress[i];
     }
 }
 

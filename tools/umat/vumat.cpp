@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -100,8 +101,10 @@ bool in_single_precision(const void* props, int n) {
   return std::abs(first) >= 0.5f && std::abs(first) < 1e9f;
 }
 
-/// The whole increment, in parts where the host's is too large: an explicit host cannot try a smaller one.
-Matrix3 advance(int material, double dt, State& state, const Matrix3& F0, const Matrix3& F1, const Matrix3& small) {
+/// The whole increment, in parts where the host's is too large: an explicit host cannot try a smaller one. `small`: the
+/// strain, where that is all there is.
+Matrix3 advance(int material, double dt, State& state, const Matrix3& F0, const Matrix3& F1,
+                const std::optional<Matrix3>& small) {
   constexpr double smallest_part = 1.0 / 1024;
   Step step;
   double done = 0, part = 1;
@@ -109,8 +112,7 @@ Matrix3 advance(int material, double dt, State& state, const Matrix3& F0, const 
     const double next = std::min(1.0, done + part);
     const Matrix3 from = done > 0 ? Matrix3(F0 + done * (F1 - F0)) : F0;
     const Matrix3 to = next < 1 ? Matrix3(F0 + next * (F1 - F0)) : F1;
-    // Analyses of small strain hand in gradients that stand still.
-    const Matrix3 dH = F0 == F1 ? exponential_increment((next - done) * small) : increment(from, to);
+    const Matrix3 dH = small ? exponential_increment((next - done) * *small) : increment(from, to);
     step = points().step(material, state, dH, (next - done) * dt, false);
     if (step.status == RVELAB_DISCARD) {
       part *= std::clamp(step.dt_scale, 0.1, 0.5);
@@ -138,13 +140,17 @@ Matrix3 new_stress(const Block<Real>& block, int point, State& state) {
     return old + stress_of(stresses.data(), Components{3, 3});
   }
   const Matrix3 F1 = block.gradient(block.F1, point), R1 = rotation_of(F1);
-  if (state.id != 0) return R1.transpose() * advance(material, block.dt, state, F0, F1, small) * R1;
+  // Analyses of small strain hand in gradients that stand still. In single precision others may stand too, until small
+  // increments have come to more than round-off: the next gradient holds those.
+  const bool still = F0 == F1 && (sizeof(Real) == sizeof(double) || F0 == Matrix3::Identity());
+  const std::optional<Matrix3> alone = still ? std::optional(small) : std::nullopt;
+  if (state.id != 0) return R1.transpose() * advance(material, block.dt, state, F0, F1, alone) * R1;
   double given[6];
   write_stress(old, block.components(), given);
   expect_first_stress(material, given, block.components(), R0, "stressOld (11 22 33 12 13 23)");
   const State made = state = points().spawn(material);
   try {
-    return R1.transpose() * advance(material, block.dt, state, F0, F1, small) * R1;
+    return R1.transpose() * advance(material, block.dt, state, F0, F1, alone) * R1;
   } catch (...) {
     points().release(made);
     throw;

@@ -199,6 +199,29 @@ void shear() {
   CHECK(std::abs(host.stress_of(0)(0, 1)) > 1000);
 }
 
+/// Increments below the round-off of single precision: the gradient moves now and then, and holds them all.
+void round_off() {
+  Host<float> host(1, 1);
+  const Reference of("discs.h5");
+  host.set_symmetric(host.stress, 0, symmetric_part(Reference("discs.h5").apply(Matrix3::Zero())));
+  Matrix3 F = Matrix3::Identity(), seen = F, strain = Matrix3::Zero();
+  int still = 0;
+  for (int step = 0; step < 12; ++step) {
+    const double shear = step == 0 ? 1e-3 : 2e-11;
+    F(0, 1) += shear;
+    strain(0, 1) = strain(1, 0) = 0.5 * shear;
+    host.set(host.F1, 0, F);
+    host.set_symmetric(host.strain, 0, strain);
+    host.call();
+    const Matrix3 next = Host<float>::rounded(F), R = umat::rotation_of(next);
+    const Matrix3 sigma = symmetric_part(of.apply(umat::increment(seen, next)));
+    CHECK(same_bits<float>(host.stress_of(0), R.transpose() * sigma * R));
+    still += next == seen;
+    seen = next;
+  }
+  CHECK(still > 5 && still < 11);
+}
+
 /// The call before the first increment: elastic, and no RVE is made.
 void elastic() {
   Host<double> host(2, 1);
@@ -263,7 +286,7 @@ void refused() {
 
 int main(int argc, char** argv) {
   if (argc != 3 || chdir(argv[2]) != 0) {
-    std::cerr << "vumat_host discs|discs_single|spheres|spheres_single|shear|elastic|parts|refused FOLDER\n";
+    std::cerr << "vumat_host discs|discs_single|spheres|spheres_single|shear|round_off|elastic|parts|refused FOLDER\n";
     return 2;
   }
   const std::string name = argv[1];
@@ -277,6 +300,8 @@ int main(int argc, char** argv) {
     biaxial<float>("spheres.h5", 6, 3);
   else if (name == "shear")
     shear();
+  else if (name == "round_off")
+    round_off();
   else if (name == "elastic")
     elastic();
   else if (name == "parts")
