@@ -311,9 +311,10 @@ void environment(void) {
   CHECK(isfinite(spheres.stress[0]));
 
   feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
+  const int traps = fegetexcept(); /* none on processors that cannot */
   trapped.stress[0] = NAN;
   call_in_full(&trapped);
-  CHECK(fegetexcept() == (FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW));
+  CHECK(fegetexcept() == traps);
   fedisableexcept(FE_ALL_EXCEPT);
   CHECK(isnan(trapped.stress[3]));
   CHECK(access("rvelab_umat.log", F_OK) != 0); /* tests/adapters/test_umat.cpp reads standard error */
