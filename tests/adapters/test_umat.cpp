@@ -50,16 +50,47 @@ TEST_CASE("umat_ serves MOOSE: spheres, line searches, tangents in calls of thei
 }
 
 TEST_CASE(
-    "vumat_ gives the stress bits of the C interface, in parts where a step is too large, elastic before the first") {
+    "vumat_ gives the stress bits of the C interface, in parts where a step is too large, elastic before the first; in "
+    "both precisions") {
   unsetenv("RVELAB_UMAT");
-  for (const std::string name : {"discs", "spheres", "shear", "elastic", "parts", "refused"}) {
+  for (const std::string name :
+       {"discs", "discs_single", "spheres", "spheres_single", "shear", "round_off", "elastic", "parts", "refused"}) {
     CAPTURE(name);
     const Workplace here;
-    prepare(here, name == "spheres");
+    prepare(here, name.starts_with("spheres"));
     const Outcome outcome = here.run(name + " .", RVELAB_VUMAT_HOST);
     CHECK(outcome.errors.empty());
     CHECK(outcome.code == 0);
   }
+}
+
+TEST_CASE("umat_ serves Kratos in space: its order of shear, no stress at first") {
+  expect_served("kratos_in_space", true);
+}
+
+TEST_CASE("umat_ serves MOOSE, which turns stresses: told by PROPS(2), or seen and refused") {
+  expect_served("moose_turns", true);
+}
+
+TEST_CASE("a host that goes on without a refused increment gets NaN and the reason; one that obeys gets its step") {
+  expect_served("disobeys");
+  expect_served("obeys");
+}
+
+TEST_CASE("a state that is copied to another point or process is refused once it has gone on elsewhere") {
+  expect_served("moves");
+}
+
+TEST_CASE("first increments of points without names take no memory that stays") { expect_served("unnamed"); }
+
+TEST_CASE("umat_ keeps its files where it began, its arithmetic from the host's, and tells what it cannot log") {
+  unsetenv("RVELAB_UMAT");
+  const Workplace here;
+  prepare(here, true);
+  const Outcome outcome = here.run("environment .", hosts);
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.errors,
+             Contains("rvelab_umat.log cannot be written; it would say: element 0, point 0: STRESS of"));
 }
 
 TEST_CASE("umat_ answers what it cannot do with NaN and one text in its log") { expect_served("refused", true); }
@@ -90,6 +121,8 @@ TEST_CASE("a mistake in the file of materials is told with line, key, value and 
       {"[[material]]\nnumber = 1\n", "line 1: material.specimen is missing"},
       {"[[material]]\nspecimen = \"discs.h5\"\n", "material.number is missing"},
       {material + "tangent = \"jaumann\"\n", "line 4: material.tangent is \"jaumann\"; allowed: \"cauchy\""},
+      {material + "shear_order = \"12 13 13\"\n", "line 4: material.shear_order is \"12 13 13\"; allowed: \"abaqus\""},
+      {material + "initial_stress = \"zero\"\n", "material.initial_stress is \"zero\"; allowed: \"host\""},
       {material + material, "line 5: material.number is 1 a second time"},
       {"material = 3\n", "file.material is missing or no list of tables"},
       {"[[material]\n", "rvelab_umat.toml, line 1"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 namespace umat {
 
@@ -13,9 +14,10 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 /// The components that a host's element has: NDI direct ones, then NSHR of shear.
 struct Components {
   int direct = 3, shear = 3;
+  std::array<int, 3> order{0, 1, 2};  ///< of shear, where there are three: which of 12 13 23 each one is
   int size() const { return direct + shear; }
   /// Place of the k-th in 11 22 33 12 13 23.
-  int place(int k) const { return k < direct ? k : 3 + k - direct; }
+  int place(int k) const { return k < direct ? k : 3 + (shear == 3 ? order[std::size_t(k - direct)] : k - direct); }
 };
 
 /// Symmetric part of a tensor to the host's vector.

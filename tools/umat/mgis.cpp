@@ -127,16 +127,16 @@ void tell(PointData& data, const std::string& text) {
 /// Unbalanced moments of the grains leave a small skew part, which the other measures would spread.
 Matrix3 symmetric_part(const Matrix3& sigma) { return 0.5 * (sigma + sigma.transpose()); }
 
-Start start_of(const double* states) { return {whole_state(states[0], "RveId"), whole_state(states[1], "RveToken")}; }
+State state_of(const double* states) { return {whole_state(states[0], "RveId"), whole_state(states[1], "RveToken")}; }
 
 int predict(const Call& call) {
-  const Start start = start_of(call.data.s0.internal_state_variables);
+  const State start = state_of(call.data.s0.internal_state_variables);
   Step step;
   if (start.id == 0) {
     step.tangent = points().first_tangent(call.material);
     step.sigma = points().first_stress(call.material);
   } else {
-    step = points().step(start, Matrix3::Zero(), 0, true);
+    step = points().step(call.material, start, Matrix3::Zero(), 0, true);
     if (step.status < RVELAB_OK) throw std::runtime_error(step.text);
   }
   if (call.wanted.speed) call.write_speed(step.tangent, call.data.s0.mass_density, call.F0);
@@ -147,7 +147,7 @@ int predict(const Call& call) {
 int advance(const Call& call) {
   PointData& data = call.data;
   points().material(call.material, "the material property Material");
-  Start start = start_of(data.s0.internal_state_variables);
+  const State start = state_of(data.s0.internal_state_variables);
   if (start.id == 0) {
     const Components components{3, call.dimension == 2 ? 1 : 3};
     double given[6];
@@ -155,21 +155,19 @@ int advance(const Call& call) {
     expect_first_stress(
         call.material, given, components, Matrix3::Identity(),
         call.dimension == 2 ? "the Cauchy stress of s0 (11 22 33 12)" : "the Cauchy stress of s0 (11 22 33 12 13 23)");
-    start = points().spawn_again(call.material, whole_state(data.s1.internal_state_variables[0], "RveId of s1"));
   }
-  Step step = points().step(start, call.dH, call.dt, call.wanted.tangent || call.wanted.speed);
+  Step step = points().step(call.material, start, call.dH, call.dt, call.wanted.tangent || call.wanted.speed);
   if (step.status == RVELAB_DISCARD) {
     if (data.rdt != nullptr) *data.rdt = std::min(*data.rdt, step.dt_scale);
     tell(data, step.text);
-    data.s1.internal_state_variables[0] = double(start.id);  // for the smaller step to come
     return -1;
   }
   if (step.status < RVELAB_OK) throw std::runtime_error(step.text);
   step.sigma = symmetric_part(step.sigma);
   if (call.wanted.speed) call.write_speed(step.tangent, data.s1.mass_density, call.F1);
   call.write_stress(step.sigma);
-  data.s1.internal_state_variables[0] = double(start.id);
-  data.s1.internal_state_variables[1] = double(step.token);
+  data.s1.internal_state_variables[0] = double(step.end.id);
+  data.s1.internal_state_variables[1] = double(step.end.token);
   if (call.wanted.tangent) call.write_tangent(step.tangent, step.sigma, call.F0, call.F1);
   if (step.status != RVELAB_W_NOT_QUASI_STATIC) return 1;
   tell(data, step.text);
@@ -180,7 +178,9 @@ int advance(const Call& call) {
 
 int integrate(Kinematics kinematics, int dimension, PointData* data) noexcept {
   if (data == nullptr) return -1;
+  const rvelab::pool::FloatingPoint standard;
   try {
+    remember_folder();
     const auto needed = [](const void* pointer, const char* name) {
       if (pointer == nullptr) throw std::runtime_error(std::string(name) + " is null; the host has to give it");
     };

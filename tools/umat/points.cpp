@@ -1,17 +1,33 @@
 #include "tools/umat/points.hpp"
 
-#include <fstream>
+#include <random>
 #include <stdexcept>
-
-#include "rvelab/io/utf8.hpp"
 
 namespace umat {
 
 namespace {
 
+/// What the user of a host can do about an error of a trial.
+std::string remedy(std::int32_t status) {
+  switch (status) {
+    case RVELAB_E_ID:
+      return "; RVEs live in the process that made them: a restart file of the host or another process (MPI) does not "
+             "have them; begin with state variables 0, leave each point in its process, and keep its state variables "
+             "unchanged and in double precision";
+    case RVELAB_E_STALE:
+      return "; the RVE has gone on from that state: another point has the same state variables (a copy: an element "
+             "was split, refined or mapped), or the host went back by more than 16 calls; each point needs state "
+             "variables of its own, 0 at first";
+    case RVELAB_E_FORKED:
+      return "; the RVEs stayed in the parent process: let the host start its processes before the first increment";
+    default:
+      return "";
+  }
+}
+
 void expect_done(std::int32_t status) {
   if (status < RVELAB_OK)
-    throw std::runtime_error(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+    throw std::runtime_error(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error() + remedy(status));
 }
 
 rvelab_batch batch_of_one(const std::int64_t& id, const RowMajor3& dH, double dt, RowMajor3& sigma) {
@@ -25,9 +41,21 @@ rvelab_batch batch_of_one(const std::int64_t& id, const RowMajor3& dH, double dt
   return batch;
 }
 
+rvelab_info info_of(rvelab_pool* pool, std::int64_t id) {
+  rvelab_info info{};
+  expect_done(rvelab_info_init(&info, sizeof info));
+  expect_done(rvelab_get_info(pool, id, &info));
+  return info;
+}
+
+/// Tries of first increments that can be gone on from: some 100 MB. RVEs of as many points take a thousand times that.
+constexpr std::int64_t most_tries = 1 << 20;
+
 }  // namespace
 
 Points::Points(const Settings& settings) : settings_(settings) {
+  std::random_device random;
+  tag_ = std::int64_t(random()) << 20 | (random() >> 12);
   expect_done(rvelab_pool_create(&settings_.pool, &pool_));
 }
 
@@ -51,10 +79,7 @@ Points::Loaded& Points::loaded(int number) {
   try {
     expect_done(rvelab_template_load(pool_, material(number).specimen.c_str(), &made.number));
     expect_done(rvelab_spawn(pool_, made.number, 1, &id));
-    rvelab_info info{};
-    expect_done(rvelab_info_init(&info, sizeof info));
-    expect_done(rvelab_get_info(pool_, id, &info));
-    made.stress = Eigen::Map<const RowMajor3>(info.sigma);
+    made.stress = Eigen::Map<const RowMajor3>(info_of(pool_, id).sigma);
     expect_done(rvelab_release(pool_, 1, &id));
     id = 0;
     return templates_.emplace(number, made).first->second;
@@ -89,74 +114,133 @@ Matrix6 Points::first_tangent(int number) {
   return *specimen.tangent;
 }
 
-std::int64_t Points::token_of(std::int64_t id) {
-  rvelab_info info{};
-  expect_done(rvelab_info_init(&info, sizeof info));
-  expect_done(rvelab_get_info(pool_, id, &info));
-  return info.token;
+Matrix3 Points::stress(std::int64_t id) {
+  const std::shared_lock beside_others(population_);
+  return Eigen::Map<const RowMajor3>(info_of(pool_, id).sigma);
 }
 
-Start Points::spawn(int number, const PointName& name) {
+State Points::spawn(int number) {
   const std::unique_lock alone(population_);
-  const bool named = name[0] != 0 && name[1] != 0;
-  const std::pair key{number, name};
-  if (const auto found = first_steps_.find(key); named && found != first_steps_.end()) {
-    if (token_of(found->second.id) == found->second.token) return found->second;
-    first_steps_.erase(found);  // it has gone on: the host begins anew
-  }
-  Start start;
-  expect_done(rvelab_spawn(pool_, loaded(number).number, 1, &start.id));
+  State made;
+  expect_done(rvelab_spawn(pool_, loaded(number).number, 1, &made.id));
   try {
-    start.token = token_of(start.id);
-    if (named) first_steps_.emplace(key, start);
+    made.token = info_of(pool_, made.id).token;
   } catch (...) {
-    rvelab_release(pool_, 1, &start.id);
+    rvelab_release(pool_, 1, &made.id);
     throw;
   }
-  return start;
+  return made;
 }
 
-Start Points::spawn_again(int number, std::int64_t tried) {
-  {
-    const std::unique_lock alone(population_);
-    const auto found = unnamed_.find({number, tried});
-    if (found != unnamed_.end()) {
-      if (token_of(tried) == found->second.token) return found->second;
-      unnamed_.erase(found);  // it has gone on
+void Points::release(const State& state) noexcept {
+  const std::unique_lock alone(population_);
+  rvelab_release(pool_, 1, &state.id);
+}
+
+/// An RVE in the state of the specimen, for one trial.
+struct Points::Borrowed {
+  Points& all;
+  int material;
+  State rve;
+  Borrowed(Points& all, int material) : all(all), material(material) {
+    {
+      const std::lock_guard lock(all.first_);
+      std::vector<State>& shared = all.shared_[material];
+      if (!shared.empty()) {
+        rve = shared.back();
+        shared.pop_back();
+        return;
+      }
+    }
+    rve = all.spawn(material);
+  }
+  ~Borrowed() {
+    try {
+      const std::lock_guard lock(all.first_);
+      all.shared_[material].push_back(rve);
+    } catch (...) {  // no memory for its name
+      all.release(rve);
     }
   }
-  const Start start = spawn(number, {});
-  const std::unique_lock alone(population_);
-  unnamed_.emplace(std::pair{number, start.id}, start);
-  return start;
+  Borrowed(const Borrowed&) = delete;
+  Borrowed& operator=(const Borrowed&) = delete;
+};
+
+Step Points::step(int number, const State& from, const Matrix3& dH, double dt, bool with_tangent) {
+  if (from.id < 0) return trial(claimed(from), dH, dt, with_tangent);
+  if (from.id > 0) return trial(from, dH, dt, with_tangent);
+  const Borrowed borrowed(*this, number);
+  Step step = trial(borrowed.rve, dH, dt, with_tangent);
+  if (step.status >= RVELAB_OK) step.end = remembered({number, dt, dH, true});
+  return step;
 }
 
-Step Points::step(const Start& start, const Matrix3& dH, double dt, bool with_tangent) {
+State Points::remembered(const Try& made) {
+  const std::lock_guard lock(first_);
+  tries_.push_back(made);
+  if (std::int64_t(tries_.size()) > most_tries) {
+    tries_.pop_front();
+    ++forgotten_;
+  }
+  return {-(forgotten_ + std::int64_t(tries_.size())), tag_};
+}
+
+/// The RVE of a first increment, which is made again with the same bits.
+State Points::claimed(const State& first) {
+  Try made;
+  {
+    const std::lock_guard lock(first_);
+    if (const auto found = claimed_.find(first.id); first.token == tag_ && found != claimed_.end())
+      return found->second;
+    const std::int64_t place = -first.id - 1 - forgotten_;
+    if (first.token != tag_ || place >= std::int64_t(tries_.size()))
+      throw std::runtime_error("the state variables name a first increment that this process did not make" +
+                               remedy(RVELAB_E_ID));
+    if (place < 0)
+      throw std::runtime_error("the state variables name a first increment that was made more than " +
+                               std::to_string(most_tries) +
+                               " calls ago; begin that point anew, with state variables 0, or use fewer points");
+    made = tries_[std::size_t(place)];
+  }
+  State own = spawn(made.material);
+  try {
+    if (made.moved) {
+      const Step step = trial(own, made.dH, made.dt, false);
+      if (step.status < RVELAB_OK) throw std::runtime_error(step.text);
+      own = step.end;
+    }
+    std::unique_lock lock(first_);
+    const auto [kept, fresh] = claimed_.emplace(first.id, own);
+    if (fresh) return own;
+    const State before = kept->second;  // another thread was faster
+    lock.unlock();
+    release(own);
+    return before;
+  } catch (...) {
+    release(own);
+    throw;
+  }
+}
+
+Step Points::trial(const State& from, const Matrix3& dH, double dt, bool with_tangent) {
   const std::shared_lock beside_others(population_);
   Step step;
   RowMajor3 sigma;
   RowMajor6 tangent;
   const RowMajor3 gradient = dH;
-  rvelab_batch batch = batch_of_one(start.id, gradient, dt, sigma);
-  batch.tokens_in = &start.token;
-  batch.tokens_out = &step.token;
+  rvelab_batch batch = batch_of_one(from.id, gradient, dt, sigma);
+  batch.tokens_in = &from.token;
+  batch.tokens_out = &step.end.token;
   batch.dt_scale = &step.dt_scale;
   batch.tangent = with_tangent ? tangent.data() : nullptr;
   step.status = rvelab_trial(pool_, &batch);
-  if (step.status != RVELAB_OK) step.text = std::string(rvelab_status_name(step.status)) + ": " + rvelab_last_error();
+  if (step.status != RVELAB_OK)
+    step.text = std::string(rvelab_status_name(step.status)) + ": " + rvelab_last_error() + remedy(step.status);
   if (step.status < RVELAB_OK) return step;
+  step.end.id = from.id;
   step.sigma = sigma;
   if (with_tangent) step.tangent = in_order_of_hosts(tangent);
   return step;
-}
-
-void log_failure(const std::string& text) {
-  static std::mutex mutex;
-  static std::set<std::string> written;
-  const std::string line = rvelab::io::message_line(text);  // paths and keys may be long, and of any bytes
-  const std::lock_guard lock(mutex);
-  if (written.size() >= 100 || !written.insert(line).second) return;
-  std::ofstream("rvelab_umat.log", std::ios::app) << line << '\n';
 }
 
 }  // namespace umat

@@ -1,25 +1,23 @@
-// The RVEs of a host's material points: one pool, spawned into when a point is seen for the first time.
+// The RVEs of a host's material points: one pool, spawned into when the first increment of a point is accepted.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <shared_mutex>
 #include <string>
+#include <vector>
 
 #include "tools/umat/kinematics.hpp"
 #include "tools/umat/settings.hpp"
 
 namespace umat {
 
-/// NOEL, NPT, LAYER, KSPT. A host that leaves NOEL or NPT at 0 does not say which point it is.
-using PointName = std::array<int, 4>;
-
-/// The state that a step begins in, as STATEV holds it.
-struct Start {
+/// The state that a step begins or ends in, as two state variables of the host hold it. id 0: the specimen; below 0:
+/// the end of a first increment, which gets an RVE once a call goes on from it.
+struct State {
   std::int64_t id = 0, token = 0;
 };
 
@@ -28,7 +26,7 @@ struct Step {
   Matrix3 sigma;    ///< Pa, laboratory frame
   Matrix6 tangent;  ///< Pa, order of the host
   double dt_scale = 1;
-  std::int64_t token = 0;
+  State end;
   std::string text;  ///< of a status that is not RVELAB_OK
 };
 
@@ -40,21 +38,28 @@ class Points {
   /// `property`.
   const Material& material(int number, const char* property = "PROPS(1)") const;
 
+  /// Of the settings, as the host names it.
+  const std::string& file() const { return settings_.path; }
+
   /// Stress of the specimen of a material, Pa.
   Matrix3 first_stress(int material);
 
   /// Elastic tangent of the specimen of a material, Pa, order of the host. It is made once.
   Matrix6 first_tangent(int material);
 
-  /// A new RVE, or, while its first step is not committed, the one that this point got before.
-  Start spawn(int material, const PointName& name);
+  /// Stress of the committed state of an RVE, Pa.
+  Matrix3 stress(std::int64_t id);
 
-  /// The same for a host that names no points and keeps what a try of the first step returned: the RVE with that id, if
-  /// it is of this material and still where it began, else a new one.
-  Start spawn_again(int material, std::int64_t tried);
+  /// A new RVE, for a host whose calls are all for good.
+  State spawn(int material);
+  void release(const State& state) noexcept;
 
-  /// One trial; on any thread.
-  Step step(const Start& start, const Matrix3& dH, double dt, bool with_tangent);
+  /// One trial; on any thread. First increments are tried by RVEs that all points share: hosts name a point anew, or
+  /// not at all, and keep one of many tries.
+  Step step(int material, const State& from, const Matrix3& dH, double dt, bool with_tangent);
+
+  /// A state of its own for a point whose first increment was refused: that of the specimen.
+  State unmoved(int material) { return remembered({material, 0, Matrix3::Zero(), false}); }
 
  private:
   struct Loaded {
@@ -62,18 +67,31 @@ class Points {
     Matrix3 stress;
     std::optional<Matrix6> tangent;
   };
+  /// A first increment.
+  struct Try {
+    int material = 0;
+    double dt = 0;
+    Matrix3 dH;
+    bool moved = true;  ///< else the specimen as it is
+  };
+  struct Borrowed;
   Loaded& loaded(int material);
-  std::int64_t token_of(std::int64_t id);
+  State state_of(std::int64_t id);
+  Step trial(const State& from, const Matrix3& dH, double dt, bool with_tangent);
+  State remembered(const Try& made);
+  State claimed(const State& first);
 
   Settings settings_;
   rvelab_pool* pool_ = nullptr;   ///< lives as long as the process: hosts have no last call
   std::shared_mutex population_;  ///< exclusive for spawning, which no work may stand beside
   std::map<int, Loaded> templates_;
-  std::map<std::pair<int, PointName>, Start> first_steps_;  ///< points whose first step may come again
-  std::map<std::pair<int, std::int64_t>, Start> unnamed_;   ///< of spawn_again, by material and id
-};
 
-/// Appends a text to rvelab_umat.log in the working directory: each once, a hundred at most.
-void log_failure(const std::string& text);
+  std::mutex first_;                          ///< of what follows; population_ is never waited for with it
+  std::int64_t tag_ = 0;                      ///< drawn at random: the token of all tries of this process
+  std::deque<Try> tries_;                     ///< the newest last
+  std::int64_t forgotten_ = 0;                ///< tries before those
+  std::map<std::int64_t, State> claimed_;     ///< RVEs of tries that a call went on from
+  std::map<int, std::vector<State>> shared_;  ///< at rest in the state of the specimen, by material
+};
 
 }  // namespace umat

@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <stdexcept>
@@ -50,6 +51,18 @@ struct Table {
     if (found != usual && found != other)
       refuse(key, "is \"" + shown(found) + "\"; allowed: \"" + usual + "\" (the default) or \"" + other + "\"");
     return found == other;
+  }
+  std::optional<std::array<int, 3>> shear_order(const std::string& key) const {
+    const std::string found = text(key, ""), axes[3] = {"12", "13", "23"};
+    if (!keys.contains(key)) return std::nullopt;
+    const std::string wanted = found == "abaqus" ? "12 13 23" : found == "kratos" ? "12 23 13" : found;
+    std::array<int, 3> order{0, 1, 2};
+    do {
+      if (wanted == axes[order[0]] + " " + axes[order[1]] + " " + axes[order[2]]) return order;
+    } while (std::next_permutation(order.begin(), order.end()));
+    refuse(key,
+           "is \"" + shown(found) +
+               "\"; allowed: \"abaqus\" (12 13 23, the default), \"kratos\" (12 23 13), or \"23 13 12\" and so on");
   }
   void number(const std::string& key, double& to) const {
     const toml::node* const node = keys.get(key);
@@ -104,12 +117,14 @@ Settings read_settings(const std::string& path) {
     whole.refuse("material", "is missing or no list of tables; write one [[material]] for each PROPS(1)");
   for (const toml::node& node : *materials) {
     const Table table{settings.path, "material", *node.as_table()};
-    table.expect_keys({"number", "specimen", "tangent"});
+    table.expect_keys({"number", "specimen", "tangent", "shear_order", "initial_stress"});
     Material material;
     const std::string specimen = table.text("specimen", "");
     if (specimen.empty()) table.refuse("specimen", "is missing; give the path of a specimen file (rvelab pack)");
-    material.specimen = (std::filesystem::path(path).parent_path() / specimen).string();
+    material.specimen = (std::filesystem::absolute(path).parent_path() / specimen).string();
     material.kirchhoff = table.choice("tangent", "cauchy", "kirchhoff");
+    material.from_zero = table.choice("initial_stress", "host", "specimen");
+    material.shear_order = table.shear_order("shear_order");
     const int number = int(table.whole("number", 1));
     if (!settings.materials.emplace(number, material).second)
       table.refuse("number", "is " + std::to_string(number) + " a second time; give each material its own");

@@ -3,18 +3,22 @@
 
 #include <rvelab/rvelab.h>
 
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace umat {
 
 struct Material {
-  std::string specimen;    ///< path
-  bool kirchhoff = false;  ///< DDSDDE is (1/J) d(J sigma)/d eps: the tangent plus sigma (x) I
+  std::string specimen;                           ///< path
+  bool kirchhoff = false;                         ///< DDSDDE is (1/J) d(J sigma)/d eps: the tangent plus sigma (x) I
+  bool from_zero = false;                         ///< a first stress of zero stands for that of the specimen
+  std::optional<std::array<int, 3>> shear_order;  ///< which of 12 13 23 each shear of the host is, where it is given
 };
 
 struct Settings {
-  std::string path;
+  std::string path;  ///< as the host names it
   rvelab_pool_def pool{};
   std::map<int, Material> materials;  ///< by PROPS(1)
 };
