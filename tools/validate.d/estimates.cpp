@@ -5,7 +5,9 @@
 // seeds from 2 to 36. Seeds from 101 on are of five kinds and most of their increments long (first_of_kinds): 101 to
 // 110 were looked at when the error of the way was chosen (add_error_of_path), 111 to 120 afterwards. Those from 201 on
 // are cemented or moist: 201 to 220 were looked at when events.hpp was made, 221 to 270 afterwards. Those from 321 on
-// are clumps and superellipsoids: 371 to 400 were looked at when the factor of starts of clumps was chosen.
+// are clumps and superellipsoids: 371 to 400 were looked at when the factor of starts of clumps was chosen. Those from
+// 501 on are of the seven kinds of an outside check, and all errors count: 501 to 549 were looked at when lags_left and
+// isostatic_creep were chosen, 620 to 689 afterwards.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance

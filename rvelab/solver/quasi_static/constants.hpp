@@ -99,9 +99,9 @@ constexpr long most_steps_before_turn = 2000;
 /// What slow modes (n > 3000) keep back of what a relaxation brought, at least: 0.007 to 0.02 in three flowing states
 /// of discs, 0.3 and 0.7 in two that roll, which no relaxation of this length shows.
 constexpr double slow_share = 0.02;
-/// Over what its second half brought: 1 + this/(1 + 70 (c - 1)^2), since soft packings creep on. Of 1,460 such increments
-/// of the seeds 501 to 549 of rvelab-estimates 92.7 % were within without, 95.5 % with it; four times at any c: 95.9 %,
-/// but dense packings are told to miss a tolerance that they meet.
+/// Over what its second half brought: 1 + this/(1 + 70 (c - 1)^2), since soft packings creep on. Of 1,460 such
+/// increments of the seeds 501 to 549 of rvelab-estimates 92.7 % were within without, 95.5 % with it; with four times
+/// at any c 95.9 %, but dense packings then miss their tolerance by the estimate alone.
 constexpr double isostatic_creep = 3;
 /// n after which grains are stopped at each peak of the kinetic energy (dynamic relaxation: Cundall 1976; Day 1965):
 /// damping by a part of the force hardly takes from modes without stiffness, such as even rings that turn like gears.
