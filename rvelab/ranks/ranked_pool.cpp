@@ -195,7 +195,7 @@ std::int64_t RankedPool::add_template(Specimen specimen) {
   const Lock lock = alone();
   const std::int64_t number = own_.share().add_template(specimen);
   try {
-    expect_all_done(to_others(message<&pool::Share::add_template_as>(specimen, number)));
+    expect_all_done(to_others(message<&pool::Share::add_template_as>(specimen, number, own_.share().first_token())));
   } catch (...) {
     own_.share().release_template(number);
     exchange(to_others(message<&pool::Share::release_template>(number)));

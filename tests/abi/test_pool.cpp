@@ -6,6 +6,7 @@
 #include "rvelab/pool/status.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"
 #include "tests/abi/host.hpp"
+#include "tests/tokens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -35,7 +36,7 @@ TEST_CASE("A batch gives the same bits on 1, 2, 3, 5 and 8 workers") {
         CHECK(trials.sigma == expected[round]);
     }
     for (std::size_t k = 0; k < ids.size(); k += 5) {
-      const auto state = host.snapshot(ids[k]);
+      const auto state = with_tokens_from_one(host.snapshot(ids[k]));
       if (workers == 1)
         states.push_back(state);
       else
@@ -185,7 +186,7 @@ TEST_CASE("info tells of the committed state while a trial is pending") {
     CHECK((before.dimension == d && before.grains == std::int64_t(start.grains.size()) && before.contacts > 0));
     CHECK(before.volume == Approx(start.cell.volume()));
     CHECK(before.fabric[0] + before.fabric[4] + before.fabric[8] == Approx(1));
-    CHECK((before.p > 0 && before.token == 1 && before.inertial_number == 0));
+    CHECK((before.p > 0 && before.token > 0 && before.inertial_number == 0));
     Trials trials(ids);
     trials.dH[0] = Nine{-1e-3};
     trials.batch.dt = 1e-3;
@@ -317,7 +318,7 @@ TEST_CASE("A slot whose generations are used up is retired") {
   worn.remove(last.value());
   worn.make_room(1);
   const Id next = Id::of(worn.add(resident()));
-  CHECK((next.slot == 2 && next.generation == 1));
+  CHECK((next.slot == 2 && next.generation > 0 && next.generation < first_limit));
   CHECK(!is_usable(0));
   CHECK(!is_usable(3u << 20));
 }
