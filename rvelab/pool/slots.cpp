@@ -45,14 +45,20 @@ IdTable::~IdTable() { change_tag(tag_, 0); }
 void IdTable::take_tag() {
   if (tag_ != 0) return;
   const std::lock_guard lock(tags_mutex);
-  const auto drawn = pools_of_tag.begin() + drawn_below(tag_limit);
-  auto unused = std::find(drawn, pools_of_tag.end(), 0);
-  if (unused == pools_of_tag.end()) unused = std::find(pools_of_tag.begin() + 1, drawn, 0);
+  const auto from = pools_of_tag.begin() + (drawn_ ? drawn_below(tag_limit) : 1);
+  auto unused = std::find(from, pools_of_tag.end(), 0);
+  if (unused == pools_of_tag.end()) unused = std::find(pools_of_tag.begin() + 1, from, 0);
   if (*unused != 0)
     throw Refused(Status::no_slot, "pool: " + std::to_string(tag_limit - 1) +
                                        " pools have RVEs already; destroy some that are not needed");
   tag_ = std::uint32_t(unused - pools_of_tag.begin());
   ++*unused;
+}
+
+void IdTable::go_on_as(const Id& first) {
+  change_tag(tag_, first.tag);
+  tag_ = first.tag;
+  first_generation_ = first.generation;
 }
 
 std::uint32_t IdTable::slot_of(std::int64_t value) const {

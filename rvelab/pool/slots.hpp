@@ -44,7 +44,9 @@ constexpr bool is_usable(std::uint32_t slot) { return (slot & ((1u << 20) - 1)) 
 /// Which ids of a pool are in use. Changed only by calls that are alone in the pool; read by any.
 class IdTable {
  public:
-  IdTable() = default;
+  /// `drawn` false: the lowest tag that is free, and generations from 1.
+  explicit IdTable(bool drawn = true)
+      : drawn_(drawn), first_generation_(drawn ? std::uint32_t(drawn_below(first_limit)) : 1) {}
   ~IdTable();
   IdTable(const IdTable&) = delete;
   IdTable& operator=(const IdTable&) = delete;
@@ -56,7 +58,9 @@ class IdTable {
   std::size_t size() const { return generations_.size(); }  ///< slots, from 0; those that are free too
   std::size_t population() const { return population_; }
   std::uint32_t tag() const { return tag_; }  ///< 0: none yet
-  void take_tag();                            ///< drawn of those that no pool of this process has, if there is none yet
+  void take_tag();                            ///< one that no pool of this process has, if there is none yet
+  Id first() const { return {tag_, first_generation_, 0}; }
+  void go_on_as(const Id& first);  ///< `first` of another table; before any id was given out
   const std::vector<std::uint32_t>& generations() const { return generations_; }
 
   /// Makes room for n more. All or nothing is taken by `take`, which then cannot fail. Refused (no_slot): all are used.
@@ -81,7 +85,8 @@ class IdTable {
   std::vector<std::uint32_t> free_;
   std::size_t population_ = 0;
   std::uint32_t tag_ = 0;
-  std::uint32_t first_generation_ = std::uint32_t(drawn_below(first_limit));  ///< of the slots that it gives out
+  bool drawn_;
+  std::uint32_t first_generation_;  ///< of the slots that it gives out
 };
 
 /// One RVE of the pool.
@@ -128,6 +133,7 @@ class Cost {
 /// they say; the rest by calls at work.
 class Slots : public IdTable {
  public:
+  using IdTable::IdTable;
   /// The slot of an id. Throws Refused (bad_id) if it is null, stale, foreign, rounded, or none.
   Slot& at(std::int64_t id) { return slots_[slot_of(id)]; }
   Slot& operator[](std::size_t slot) { return slots_[slot]; }

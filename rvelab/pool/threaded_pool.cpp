@@ -28,6 +28,8 @@ constexpr std::uint64_t resting = 1;
 /// Sub-steps of a call after which an RVE rests at once: waking takes the time of three.
 constexpr long long_call = 100;
 
+bool is_drawn(const Options& options) { return (options.flags & RVELAB_POOL_COUNTED_IDS) == 0; }
+
 void override_settings(Specimen& specimen, const Options& options) {
   SolverOptions& solver = specimen.solver;
   if (options.tolerance_rel > 0) solver.relative_tolerance = options.tolerance_rel;
@@ -42,7 +44,8 @@ void override_settings(Specimen& specimen, const Options& options) {
 ThreadedPool::ThreadedPool(const Options& options)
     : options_((expect_options(options), options)),
       team_(options),
-      first_token_(drawn_below(std::int64_t(1) << 52)),
+      slots_(is_drawn(options)),
+      first_token_(is_drawn(options) ? drawn_below(std::int64_t(1) << 52) : 1),
       next_template_(drawn_below(std::int64_t(1) << 21) << 32 | 1) {
   count_forks();
   process_ = forks;
@@ -177,10 +180,10 @@ void ThreadedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t*
   for (auto& resident : made) *ids++ = slots_.add(std::move(resident));
 }
 
-std::uint32_t ThreadedPool::tag() {
+Id ThreadedPool::first_id() {
   const Alone alone(*this);
   slots_.take_tag();
-  return slots_.tag();
+  return slots_.first();
 }
 
 void ThreadedPool::spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) {

@@ -97,8 +97,8 @@ class ThreadedPool : public Pool {
     return made;
   }
 
-  /// Tag of the ids, taken from those of this process if there is none yet.
-  virtual std::uint32_t tag();
+  /// What ids begin with; the tag is taken from those of this process if there is none yet.
+  virtual Id first_id();
   /// Of RVEs that are spawned; that of the first rank on all.
   virtual std::int64_t first_token() const { return first_token_; }
   virtual void add_template_as(Specimen specimen, std::int64_t number, std::int64_t first_token);

@@ -2,11 +2,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <functional>
 #include <set>
 
 #include "rvelab/pool/threaded_pool.hpp"
 #include "tests/abi/host.hpp"
+#include "tests/folder.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -174,6 +176,25 @@ TEST_CASE("What pools give out differs from pool to pool, and is exact in a doub
   }
   CHECK((ids.size() == 100 && tokens.size() == 100 && templates.size() >= 99));
   CHECK((tags.size() > 80 && generations.size() > 95));
+}
+
+TEST_CASE("Ids that count give pool files of the same bytes; those that are drawn differ in them alone") {
+  const Folder folder;
+  const auto written = [&](std::uint32_t flags) {
+    rvelab_pool_def def = default_def();
+    def.flags = flags;
+    Host host(def);
+    const Kept kept = kept_of(host);
+    CHECK((kept.tokens[0] == 2) == (flags != 0));
+    REQUIRE_OK(rvelab_commit(host.pool, 0, nullptr));
+    REQUIRE_OK(rvelab_pool_write(host.pool, (folder / "pool.h5").c_str()));
+    std::ifstream file(folder / "pool.h5", std::ios::binary);
+    return std::pair(std::string(std::istreambuf_iterator<char>(file), {}), host.state(kept.ids[0]));
+  };
+  const auto counted = written(RVELAB_POOL_COUNTED_IDS), drawn = written(0);
+  CHECK(counted.first == written(RVELAB_POOL_COUNTED_IDS).first);
+  CHECK(drawn.first != written(0).first);
+  CHECK(Rve(drawn.second).save() == Rve(counted.second).save());
 }
 
 TEST_CASE("Ids and tokens of a pool file from before they were drawn stay valid, and new ones are drawn") {

@@ -6,7 +6,6 @@
 #include "rvelab/pool/status.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"
 #include "tests/abi/host.hpp"
-#include "tests/tokens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -16,7 +15,9 @@ TEST_CASE("A batch gives the same bits on 1, 2, 3, 5 and 8 workers") {
   std::vector<std::vector<Nine>> expected;
   std::vector<std::vector<std::byte>> states;
   for (const int workers : {1, 2, 3, 5, 8}) {
-    Host host(workers);
+    rvelab_pool_def def = default_def(workers);
+    def.flags = RVELAB_POOL_COUNTED_IDS;  // snapshots hold tokens
+    Host host(def);
     auto ids = host.spawn(packed(Shape::disc, 6), discs);
     const auto more = host.spawn(packed(Shape::sphere, 4), spheres);
     ids.insert(ids.end(), more.begin(), more.end());
@@ -36,7 +37,7 @@ TEST_CASE("A batch gives the same bits on 1, 2, 3, 5 and 8 workers") {
         CHECK(trials.sigma == expected[round]);
     }
     for (std::size_t k = 0; k < ids.size(); k += 5) {
-      const auto state = with_tokens_from_one(host.snapshot(ids[k]));
+      const auto state = host.snapshot(ids[k]);
       if (workers == 1)
         states.push_back(state);
       else

@@ -6,7 +6,6 @@
 #include <regex>
 
 #include "tests/ranks/local_ranks.hpp"
-#include "tests/tokens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -24,8 +23,11 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
         const Specimen& start = side == 5 ? cemented(side) : packed(side);
         one.spawn(one.add_template(start), 5, here.data());
         spread->spawn(spread->add_template(start), 5, there.data());
-        // tag and first generation are drawn by each pool; the slot is the same
-        for (std::size_t k = 0; k < 5; ++k) CHECK(pool::Id::of(here[k]).slot == pool::Id::of(there[k]).slot);
+        // the tag is that of the pool; generation and slot are the same
+        for (std::size_t k = 0; k < 5; ++k) {
+          CHECK(pool::Id::of(here[k]).slot == pool::Id::of(there[k]).slot);
+          CHECK(pool::Id::of(here[k]).generation == pool::Id::of(there[k]).generation);
+        }
         ids.insert(ids.end(), here.begin(), here.end());
       }
       const std::vector<std::int64_t> all = spread->ids();
@@ -35,19 +37,6 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
         std::vector<std::int64_t> mapped;
         for (const std::int64_t id : here) mapped.push_back(there_of.at(id));
         return mapped;
-      };
-      const std::int64_t shift = spread->at<&pool::Share::info>(all[0]).token - one.info(ids[0]).token;
-      const auto shifted = [](std::vector<std::int64_t> tokens, std::int64_t by) {
-        for (std::int64_t& token : tokens) token += by;
-        return tokens;
-      };
-      /// Of the pool over ranks, in the tokens of the other; from a token of that.
-      const auto trial_there = [&](const std::vector<std::int64_t>& of, const std::vector<double>& gradients,
-                                   const std::vector<std::int64_t>* tokens = nullptr, double dt = 0, bool all = false) {
-        const auto from = shifted(tokens == nullptr ? std::vector<std::int64_t>() : *tokens, shift);
-        Found found = trial(*spread, there(of), gradients, tokens == nullptr ? nullptr : &from, dt, all);
-        found.tokens = shifted(found.tokens, -shift);
-        return found;
       };
       Draw draw{std::uint64_t(ranks)};
       bool equal = true;
@@ -60,11 +49,13 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
         std::vector<std::int64_t> tokens;
         for (const std::int64_t id : chosen) tokens.push_back(one.info(id).token);
         const Found first = trial(one, chosen, gradients, round % 3 == 0 ? &tokens : nullptr, dt, with_all);
-        equal = equal && first == trial_there(chosen, gradients, round % 3 == 0 ? &tokens : nullptr, dt, with_all);
+        equal = equal &&
+                first == trial(*spread, there(chosen), gradients, round % 3 == 0 ? &tokens : nullptr, dt, with_all);
         if (round % 4 == 1) {  // a token that is not the last one
           const auto step = draw.gradients(chosen.size(), 1e-5), other = draw.gradients(chosen.size(), 1e-5);
-          equal = equal && trial(one, chosen, step) == trial_there(chosen, step);
-          equal = equal && trial(one, chosen, other, &first.tokens) == trial_there(chosen, other, &first.tokens);
+          equal = equal && trial(one, chosen, step) == trial(*spread, there(chosen), step);
+          equal =
+              equal && trial(one, chosen, other, &first.tokens) == trial(*spread, there(chosen), other, &first.tokens);
         }
         switch (draw.below(4)) {
           case 0:
@@ -91,11 +82,10 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
       }
       CHECK(equal);
       for (const std::int64_t id : ids) {
-        CHECK(with_tokens_from_one(one.save(id)) ==
-              with_tokens_from_one(spread->at<&pool::Share::save>(there_of.at(id))));
+        CHECK(one.save(id) == spread->at<&pool::Share::save>(there_of.at(id)));
         const rvelab_info a = one.info(id), b = spread->at<&pool::Share::info>(there_of.at(id));
         CHECK((a.p == b.p && std::ranges::equal(a.fabric, b.fabric) && std::ranges::equal(a.lattice, b.lattice) &&
-               a.token + shift == b.token && a.contacts == b.contacts && a.grain_steps == b.grain_steps &&
+               a.token == b.token && a.contacts == b.contacts && a.grain_steps == b.grain_steps &&
                a.inertial_number == b.inertial_number && a.error_estimate == b.error_estimate));
         const auto rows = one.array_rows(id);
         CHECK(rows == spread->at<&pool::Share::array_rows>(there_of.at(id)));
@@ -109,6 +99,33 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
       }
       if (ranks > 1) CHECK(spread->moved() > 0);
     }
+}
+
+TEST_CASE("ids and tokens over ranks begin with what is drawn once for all of them, and those of another are refused") {
+  std::int64_t foreign[4], foreign_token = 0;
+  for (int k = 0; k < 2; ++k) {  // the second over the same ids, but for what was drawn
+    const auto spread = over(3);
+    std::int64_t ids[4];
+    spread->spawn(spread->add_template(packed(3)), 4, ids);  // on three ranks
+    const std::int64_t token = spread->at<&pool::Share::info>(ids[0]).token;
+    for (const std::int64_t id : ids) {
+      CHECK(pool::Id::of(id).tag == pool::Id::of(ids[0]).tag);
+      CHECK(pool::Id::of(id).generation == pool::Id::of(ids[0]).generation);
+      CHECK(spread->at<&pool::Share::info>(id).token == token);
+    }
+    CHECK(token > 1);
+    const Found first = trial(*spread, {ids, ids + 4}, Draw(1).gradients(4, 1e-5));
+    for (const std::int64_t each : first.tokens) CHECK(each == token + 1);
+    if (k == 1) {
+      CHECK_THAT(refusal([&] { spread->at<&pool::Share::info>(foreign[1]); }),
+                 Catch::Matchers::StartsWith("-4") && Catch::Matchers::Contains("another pool or process made it"));
+      const std::vector<std::int64_t> tokens(4, foreign_token);
+      const Found refused = trial(*spread, {ids, ids + 4}, Draw(1).gradients(4, 1e-5), &tokens);
+      CHECK(refused.status == std::vector<std::int32_t>(4, RVELAB_E_STALE));
+    }
+    std::copy_n(ids, 4, foreign);
+    foreign_token = token;
+  }
 }
 
 TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a pool in one process") {
@@ -142,7 +159,7 @@ TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a 
       batch.held_error = found.data() + 90;
       batch.tokens_out = tokens.data();
       CHECK(pool::apply_mixed(pool, batch).status == pool::Status::ok);
-      for (std::size_t m = 0; m < 5; ++m) CHECK(tokens[m] == pool.at<&pool::Share::info>(ids[m]).token);
+      found.insert(found.end(), tokens.begin(), tokens.end());
       return found;
     };
     CHECK(apply(one, here) == apply(*spread, there));
@@ -150,12 +167,12 @@ TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a 
       const auto alone = one.relax(here[m], 1e-6, 50), apart = spread->at<&pool::Share::relax>(there[m], 1e-6, 50);
       CHECK(std::memcmp(&alone, &apart, sizeof alone) == 0);
       const auto state = one.save(here[m]);
-      CHECK(with_tokens_from_one(state) == with_tokens_from_one(spread->at<&pool::Share::save>(there[m])));
+      CHECK(state == spread->at<&pool::Share::save>(there[m]));
       const std::span<const std::byte> bytes(state);
-      const std::int64_t token = spread->at<&pool::Share::info>(there[m]).token;
+      const std::int64_t token = one.info(here[m]).token;
       spread->at<&pool::Share::replace>(there[m], bytes, token, std::int64_t(7));
       CHECK(state == spread->at<&pool::Share::save>(there[m]));
-      CHECK_THROWS_AS(spread->at<&pool::Share::replace>(there[m], bytes, token, std::int64_t(0)), pool::Refused);
+      CHECK_THROWS_AS(spread->at<&pool::Share::replace>(there[m], bytes, token + 1, std::int64_t(0)), pool::Refused);
       std::int64_t cost_here = 0, cost_there = 1;
       one.cost({&here[m], 1}, &cost_here);
       spread->cost({&there[m], 1}, &cost_there);
@@ -179,9 +196,7 @@ TEST_CASE("RVEs that move between ranks keep their pending trials") {
   Draw draw(1);
   const auto gradients = draw.gradients(3, 1e-4), next = draw.gradients(3, 1e-4);
   const Found first = trial(*spread, busy, gradients);
-  Found expected = trial(one, busy_here, gradients);
-  expected.tokens = first.tokens;  // each pool draws its own
-  CHECK(first == expected);
+  CHECK(first == trial(one, busy_here, gradients));
   const std::vector<std::int64_t> stale{99, 99, 99};
   const Found refused = trial(*spread, busy, next, &stale);  // they move, and nothing else is done
   CHECK(spread->moved() > 0);
@@ -189,8 +204,7 @@ TEST_CASE("RVEs that move between ranks keep their pending trials") {
   spread->commit(busy);
   one.commit(busy_here);
   for (std::size_t k = 0; k < busy.size(); ++k)
-    CHECK(with_tokens_from_one(spread->at<&pool::Share::save>(busy[k])) ==
-          with_tokens_from_one(one.save(busy_here[k])));
+    CHECK(spread->at<&pool::Share::save>(busy[k]) == one.save(busy_here[k]));
 }
 
 TEST_CASE("a pool over ranks refuses what a pool in one process does, with the same words") {
@@ -199,7 +213,6 @@ TEST_CASE("a pool over ranks refuses what a pool in one process does, with the s
     std::vector<std::int64_t> ids(4);
     const std::int64_t specimen = pool.add_template(packed(4));
     pool.spawn(specimen, 4, ids.data());
-    const std::int64_t first_token = pool.at<&pool::Share::info>(ids[0]).token;
     const auto say = [&](const std::function<void()>& work) {
       std::string text = refusal(work);
       for (const std::int64_t id : ids)  // ids differ by the tag of the pool
@@ -237,7 +250,7 @@ TEST_CASE("a pool over ranks refuses what a pool in one process does, with the s
     CHECK((foreign.status[0] >= 0 && foreign.status[1] == -4 && foreign.scale[1] == 0 && foreign.status[2] >= 0));
     say([&] { throw pool::Refused(foreign.verdict.status, foreign.verdict.text); });
     say([&] { pool.commit(ids); });  // the second has no trial: none is committed
-    CHECK(pool.at<&pool::Share::info>(ids[0]).token == first_token);
+    CHECK(pool.at<&pool::Share::info>(ids[0]).token == 1);
     pool.release(std::vector{ids[1]});
     say([&] { pool.apply(ids[1], none, 0, stress); });
     CHECK(pool.ids() == std::vector{ids[0], ids[2], ids[3]});
