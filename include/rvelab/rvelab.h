@@ -25,7 +25,7 @@
  * zero is the default of every field. A smaller struct of an older header: its missing fields have their defaults. A
  * larger one of a newer header is accepted if what is beyond this version is zero, else RVELAB_E_UNSUPPORTED names the
  * offset: a host of a newer header zeroes its structs before init. A size that ends within a field is RVELAB_E_INPUT.
- * Outputs are written up to struct_size. flags must be zero.
+ * Outputs are written up to struct_size. flags must be zero, but for those named below.
  *
  * Hosts that iterate for equilibrium (implicit finite elements) do with tolerance_rel = 0.1 and tolerance_abs = 1e-3: a
  * drained biaxial test of 400 discs, in increments of 1e-3 by Newton's iteration with the tangent, has a peak of 30.4
@@ -117,9 +117,14 @@ typedef void (*rvelab_run_tasks)(void* host, rvelab_task task, void* work, int64
 #define RVELAB_TRIAL_KEEP 0      /* a pending trial is kept beside the committed state: commit costs nothing */
 #define RVELAB_TRIAL_RECOMPUTE 1 /* only the committed state is kept: commit makes the trial again */
 
+/* Ids and tokens of a pool begin with numbers drawn at random. With this flag, since 1.3, they count from the lowest:
+ * the same calls write pool files of the same bytes, but ids of another process, or of a pool that is gone, may be
+ * taken for those of this one. For hosts whose ids stay where they were made. */
+#define RVELAB_POOL_COUNTED_IDS 2
+
 typedef struct rvelab_pool_def {
   uint32_t struct_size;
-  uint32_t flags;
+  uint32_t flags;       /* 0 or RVELAB_POOL_COUNTED_IDS */
   int32_t workers;      /* threads of a batch, the caller's included; 0: as many as the processor runs at once. They
                            start with the first batch that needs them */
   int32_t trial_memory; /* RVELAB_TRIAL_KEEP or RVELAB_TRIAL_RECOMPUTE */
@@ -146,8 +151,10 @@ int32_t rvelab_pool_destroy(rvelab_pool* pool);
 /* ---- population ----
  *
  * An id names one RVE of one pool: pool tag (10 bits), generation (17), slot (26), at most 53 bits: exact in a double.
- * Zero is null. An id that was released, of another pool, or passed through single precision is RVELAB_E_ID. Pools
- * that read one file (rvelab_pool_read) share its tag: an id of the one may then be one of the other.
+ * Zero is null. A pool has 67,108,800 slots. Its tag and first generation are drawn at random, so that an id that was
+ * released, or is of another pool, of one that is gone or of another process, is RVELAB_E_ID (one in 67 million may be
+ * taken); so is one that was passed through single precision. A pool file keeps both: ids go on in the pool that reads
+ * it. Pools that read one file have the same ids: give each RVE to one of them.
  * A template is what RVEs are made from; it lives until it is released, or as long as its pool. */
 
 /* From a specimen file, or the end state of a record file. Needs librvelab-h5.so beside this library. */
@@ -188,7 +195,8 @@ int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt,
  * in a double. With tokens_in, each RVE starts from the state that the token names: the committed one (its token is
  * info.token, or what the trial returned that was committed), or the end of one of the last 16 trials since, which is
  * committed by this (made again if it is not the last), whatever becomes of the step that follows. Any other token is
- * RVELAB_E_STALE. Tokens survive snapshots, clones and pool files. */
+ * RVELAB_E_STALE, and so is one of another pool or process: tokens of a pool count up from a number drawn at random.
+ * Tokens survive snapshots, clones and pool files. */
 
 typedef struct rvelab_batch {
   uint32_t struct_size;

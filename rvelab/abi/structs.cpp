@@ -41,7 +41,8 @@ void expect_size(std::size_t size, const char* name, std::span<const Field> fiel
                                            std::to_string(field.end) + ")" + remedy(name));
 }
 
-std::size_t checked_size(const void* given, const char* name, std::span<const Field> fields) {
+std::size_t checked_size(const void* given, const char* name, std::span<const Field> fields,
+                         std::uint32_t known_flags) {
   std::uint32_t head[2];  // struct_size and flags
   std::memcpy(head, given, sizeof head);
   const std::size_t size = head[0];
@@ -53,9 +54,10 @@ std::size_t checked_size(const void* given, const char* name, std::span<const Fi
       throw Refused(Status::unsupported, std::string(name) + ": the byte at offset " + std::to_string(at) +
                                              " is not zero, and this version knows " + std::to_string(own) +
                                              " bytes; leave later fields at zero, or use a later librvelab");
-  if (head[1] != 0)
+  if ((head[1] & ~known_flags) != 0)
     throw Refused(Status::unsupported,
-                  std::string(name) + ".flags is " + std::to_string(head[1]) + "; this version knows none: give 0");
+                  std::string(name) + ".flags is " + std::to_string(head[1]) + "; this version knows " +
+                      (known_flags == 0 ? "none: give 0" : std::to_string(known_flags) + " alone: give that, or 0"));
   return size;
 }
 

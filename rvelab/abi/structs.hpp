@@ -59,13 +59,18 @@ RVELAB_LAYOUT(rvelab_array, RVELAB_FIELDS_OF_ARRAY)
 void expect_size(std::size_t size, const char* name, std::span<const Field> fields);
 
 /// The same of the struct_size of a struct; refuses bytes beyond its fields that are not zero, and flags that are not
-/// (unsupported). Returns struct_size.
-std::size_t checked_size(const void* given, const char* name, std::span<const Field> fields);
+/// known (unsupported). Returns struct_size.
+std::size_t checked_size(const void* given, const char* name, std::span<const Field> fields, std::uint32_t known_flags);
+
+template <class Struct>
+constexpr std::uint32_t known_flags = 0;
+template <>
+inline constexpr std::uint32_t known_flags<rvelab_pool_def> = RVELAB_POOL_COUNTED_IDS;
 
 /// A struct of a host; fields that it does not have are zero.
 template <class Struct>
 Struct read_struct(const Struct* given) {
-  const std::size_t size = checked_size(given, Layout<Struct>::name, Layout<Struct>::fields);
+  const std::size_t size = checked_size(given, Layout<Struct>::name, Layout<Struct>::fields, known_flags<Struct>);
   Struct own{};
   std::memcpy(&own, given, std::min(size, sizeof own));
   return own;

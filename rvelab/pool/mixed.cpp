@@ -60,7 +60,8 @@ Verdict each_entry(Pool& pool, const char* name, std::int64_t count, const std::
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice != sorted.end())
-    throw Refused(Status::duplicate, std::string(name) + ": id " + std::to_string(*twice) + " stands twice");
+    throw Refused(Status::duplicate, std::string(name) + ": id " + std::to_string(*twice) +
+                                         " stands twice in one call; give each RVE once");
   std::vector<Verdict> verdicts(n);
   pool.run_each(n, [&](std::size_t m) {
     try {

@@ -22,11 +22,14 @@ struct TrialRecord {
   double dt = 0;                                    ///< s
 };
 
-/// Of one RVE. Tokens count up from 1; a double holds more of them than there is time for.
+/// Of one RVE. Tokens count up from a first one, drawn at random below 2^52 for each pool, so that those of another
+/// pool or process are seen to be foreign; a double holds more of them than there is time for.
 class Tokens {
  public:
   static constexpr int kept = 16;
 
+  Tokens() : Tokens(1) {}
+  explicit Tokens(std::int64_t first) : committed_(first), next_(first + 1) {}
   std::int64_t committed() const { return committed_; }
   std::int64_t next() const { return next_; }
   int trials() const { return trials_; }
@@ -70,7 +73,7 @@ class Tokens {
   }
 
  private:
-  std::int64_t committed_ = 1, next_ = 2;
+  std::int64_t committed_, next_;
   std::array<TrialRecord, kept> last_;
   int trials_ = 0;
 };

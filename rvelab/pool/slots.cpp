@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <random>
 #include <string>
 
 #include "rvelab/pool/status.hpp"
@@ -33,17 +34,31 @@ void expect_slots(bool enough) {
 
 }  // namespace
 
+std::int64_t drawn_below(std::int64_t limit) {
+  std::random_device device;
+  const std::uint64_t high = device();
+  return std::int64_t(1 + (high << 32 | device()) % std::uint64_t(limit - 1));
+}
+
 IdTable::~IdTable() { change_tag(tag_, 0); }
 
 void IdTable::take_tag() {
   if (tag_ != 0) return;
   const std::lock_guard lock(tags_mutex);
-  const auto unused = std::find(pools_of_tag.begin() + 1, pools_of_tag.end(), 0);
-  if (unused == pools_of_tag.end())
+  const auto from = pools_of_tag.begin() + (drawn_ ? drawn_below(tag_limit) : 1);
+  auto unused = std::find(from, pools_of_tag.end(), 0);
+  if (unused == pools_of_tag.end()) unused = std::find(pools_of_tag.begin() + 1, from, 0);
+  if (*unused != 0)
     throw Refused(Status::no_slot, "pool: " + std::to_string(tag_limit - 1) +
                                        " pools have RVEs already; destroy some that are not needed");
   tag_ = std::uint32_t(unused - pools_of_tag.begin());
   ++*unused;
+}
+
+void IdTable::go_on_as(const Id& first) {
+  change_tag(tag_, first.tag);
+  tag_ = first.tag;
+  first_generation_ = first.generation;
 }
 
 std::uint32_t IdTable::slot_of(std::int64_t value) const {
@@ -56,11 +71,19 @@ std::uint32_t IdTable::slot_of(std::int64_t value) const {
     refuse("it is no id: ids are positive integers below 2^53; give one that spawn, clone or a pool file returned");
   if (!is_usable(id.slot))
     refuse("it was rounded, as single precision does; keep ids in 64-bit integers or in double precision");
+  const auto refuse_foreign = [&](const std::string& seen_by) {
+    refuse("another pool or process made it (" + seen_by +
+           "); give it to the pool that made it, or take the RVE over by a snapshot or a pool file");
+  };
   if (id.tag != tag_)
-    refuse("it is of the pool with tag " + std::to_string(id.tag) + "; this one has " +
-           (tag_ == 0 ? "no RVEs yet" : "the tag " + std::to_string(tag_)) + ": give it to the pool that made it");
-  if (id.slot >= generations_.size()) refuse("no RVE of this pool ever had it");
-  if (generations_[id.slot] != id.generation || !used_[id.slot]) refuse("it is stale: its RVE was released");
+    refuse_foreign("of tag " + std::to_string(id.tag) + ", and this pool " +
+                   (tag_ == 0 ? "has no RVEs yet" : "is of tag " + std::to_string(tag_)));
+  if (id.slot >= generations_.size() || id.generation > generations_[id.slot])
+    refuse_foreign("no RVE of this pool ever had it");
+  if (generations_[id.slot] != id.generation || !used_[id.slot])
+    refuse(
+        "it is stale: its RVE was released, or another pool or process made it; give one that spawn, clone or a pool "
+        "file returned");
   return id.slot;
 }
 
@@ -102,6 +125,7 @@ std::int64_t IdTable::take() noexcept {
   free_.pop_back();
   used_[slot] = true;
   ++population_;
+  generations_[slot] = std::max(generations_[slot], first_generation_);
   return id_of(slot);
 }
 

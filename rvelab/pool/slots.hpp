@@ -1,9 +1,10 @@
 // Where the RVEs of a pool live, under which ids, who is at work on each, and which of them rest.
 //
 // Ids: pool tag (10 bits), generation (17), slot (26): 53 bits, exact in a double. A slot that is released gets the
-// next generation, so that the old id is seen to be stale; when its generations are used up it is retired. Single
-// precision keeps 24 bits: with a tag above zero it changes the lowest 20 bits of the slot to zeros. Slots whose lowest
-// 20 bits are zero are never used, so that a rounded id is seen to be one.
+// next generation, so that the old id is seen to be stale; when its generations are used up it is retired. Tag and
+// first generation are drawn at random for each pool, so that an id of another pool or process is seen to be foreign.
+// Single precision keeps 24 bits: with a tag above zero it changes the lowest 20 bits of the slot to zeros. Slots whose
+// lowest 20 bits are zero are never used, so that a rounded id is seen to be one.
 #pragma once
 
 #include <atomic>
@@ -19,6 +20,11 @@ constexpr int slot_bits = 26, generation_bits = 17, tag_bits = 10;
 constexpr std::uint32_t slot_limit = 1u << slot_bits;              ///< slots are below
 constexpr std::uint32_t generation_limit = 1u << generation_bits;  ///< generations are below, and above 0
 constexpr std::uint32_t tag_limit = 1u << tag_bits;                ///< tags are below, and above 0
+constexpr std::uint32_t first_limit = 1u << 16;  ///< first generations are below, and above 0: half are left for reuse
+
+/// From 1 to below `limit`, at most 2^52; no other pool or process can know it. No result of a calculation depends on
+/// it.
+std::int64_t drawn_below(std::int64_t limit);
 
 struct Id {
   std::uint32_t tag = 0, generation = 0, slot = 0;
@@ -38,7 +44,9 @@ constexpr bool is_usable(std::uint32_t slot) { return (slot & ((1u << 20) - 1)) 
 /// Which ids of a pool are in use. Changed only by calls that are alone in the pool; read by any.
 class IdTable {
  public:
-  IdTable() = default;
+  /// `drawn` false: the lowest tag that is free, and generations from 1.
+  explicit IdTable(bool drawn = true)
+      : drawn_(drawn), first_generation_(drawn ? std::uint32_t(drawn_below(first_limit)) : 1) {}
   ~IdTable();
   IdTable(const IdTable&) = delete;
   IdTable& operator=(const IdTable&) = delete;
@@ -51,6 +59,8 @@ class IdTable {
   std::size_t population() const { return population_; }
   std::uint32_t tag() const { return tag_; }  ///< 0: none yet
   void take_tag();                            ///< one that no pool of this process has, if there is none yet
+  Id first() const { return {tag_, first_generation_, 0}; }
+  void go_on_as(const Id& first);  ///< `first` of another table; before any id was given out
   const std::vector<std::uint32_t>& generations() const { return generations_; }
 
   /// Makes room for n more. All or nothing is taken by `take`, which then cannot fail. Refused (no_slot): all are used.
@@ -75,6 +85,8 @@ class IdTable {
   std::vector<std::uint32_t> free_;
   std::size_t population_ = 0;
   std::uint32_t tag_ = 0;
+  bool drawn_;
+  std::uint32_t first_generation_;  ///< of the slots that it gives out
 };
 
 /// One RVE of the pool.
@@ -121,6 +133,7 @@ class Cost {
 /// they say; the rest by calls at work.
 class Slots : public IdTable {
  public:
+  using IdTable::IdTable;
   /// The slot of an id. Throws Refused (bad_id) if it is null, stale, foreign, rounded, or none.
   Slot& at(std::int64_t id) { return slots_[slot_of(id)]; }
   Slot& operator[](std::size_t slot) { return slots_[slot]; }

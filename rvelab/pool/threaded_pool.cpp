@@ -19,9 +19,7 @@ void count_forks() {
   if (done != 0) throw std::bad_alloc();
 }
 
-std::atomic<std::uint32_t> pools_made{0};
-
-/// The part of a template's number that counts those of its pool.
+/// The part of a template's number that counts those of its pool; its number is exact in a double.
 constexpr std::int64_t most_templates = 0xffffffff;
 
 /// Owner of a slot whose RVE is being put to rest.
@@ -29,6 +27,8 @@ constexpr std::uint64_t resting = 1;
 
 /// Sub-steps of a call after which an RVE rests at once: waking takes the time of three.
 constexpr long long_call = 100;
+
+bool is_drawn(const Options& options) { return (options.flags & RVELAB_POOL_COUNTED_IDS) == 0; }
 
 void override_settings(Specimen& specimen, const Options& options) {
   SolverOptions& solver = specimen.solver;
@@ -44,7 +44,9 @@ void override_settings(Specimen& specimen, const Options& options) {
 ThreadedPool::ThreadedPool(const Options& options)
     : options_((expect_options(options), options)),
       team_(options),
-      next_template_(std::int64_t(++pools_made & 0x7fffffff) << 32 | 1) {
+      slots_(is_drawn(options)),
+      first_token_(is_drawn(options) ? drawn_below(std::int64_t(1) << 52) : 1),
+      next_template_(drawn_below(std::int64_t(1) << 21) << 32 | 1) {
   count_forks();
   process_ = forks;
 }
@@ -123,9 +125,9 @@ void ThreadedPool::rest_another() noexcept {
 }
 
 /// The options of the pool override settings of the specimen.
-Resident ThreadedPool::made_template(Specimen& specimen) const {
+Resident ThreadedPool::made_template(Specimen& specimen, std::int64_t first_token) const {
   override_settings(specimen, options_);
-  Resident made{Rve(specimen), {}};
+  Resident made{Rve(specimen), Tokens(first_token)};
   made.initial_void_ratio = void_ratio(made.rve.network());
   made.rve.release();
   return made;
@@ -136,13 +138,13 @@ std::int64_t ThreadedPool::add_template(Specimen specimen) {
   if ((next_template_ & most_templates) == most_templates)
     throw Refused(Status::no_slot, "pool: " + std::to_string(most_templates - 1) +
                                        " templates were made of it, and no number is left; make another pool");
-  templates_.emplace(next_template_, made_template(specimen));
+  templates_.emplace(next_template_, made_template(specimen, first_token_));
   return next_template_++;
 }
 
-void ThreadedPool::add_template_as(Specimen specimen, std::int64_t number) {
+void ThreadedPool::add_template_as(Specimen specimen, std::int64_t number, std::int64_t first_token) {
   const Alone alone(*this);
-  templates_.emplace(number, made_template(specimen));
+  templates_.emplace(number, made_template(specimen, first_token));
 }
 
 /// Refused (bad_id).
@@ -151,7 +153,8 @@ ThreadedPool::Templates::const_iterator ThreadedPool::template_of(std::int64_t n
   if (found != templates_.end()) return found;
   const bool own = number >> 32 == next_template_ >> 32 && (number & most_templates) > 0 && number < next_template_;
   throw Refused(Status::bad_id, "template " + std::to_string(number) +
-                                    (own ? ": it was released; " : ": this pool has none of that number; ") +
+                                    (own ? ": it was released; "
+                                         : ": this pool has none of that number, another pool or process may; ") +
                                     "give one that template_load or template_from_snapshot of this pool returned");
 }
 
@@ -177,10 +180,10 @@ void ThreadedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t*
   for (auto& resident : made) *ids++ = slots_.add(std::move(resident));
 }
 
-std::uint32_t ThreadedPool::tag() {
+Id ThreadedPool::first_id() {
   const Alone alone(*this);
   slots_.take_tag();
-  return slots_.tag();
+  return slots_.first();
 }
 
 void ThreadedPool::spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) {

@@ -97,9 +97,11 @@ class ThreadedPool : public Pool {
     return made;
   }
 
-  /// Tag of the ids, taken from those of this process if there is none yet.
-  virtual std::uint32_t tag();
-  virtual void add_template_as(Specimen specimen, std::int64_t number);
+  /// What ids begin with; the tag is taken from those of this process if there is none yet.
+  virtual Id first_id();
+  /// Of RVEs that are spawned; that of the first rank on all.
+  virtual std::int64_t first_token() const { return first_token_; }
+  virtual void add_template_as(Specimen specimen, std::int64_t number, std::int64_t first_token);
   /// RVEs of a template under these ids; all or none.
   virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids);
   virtual void clone_as(std::int64_t source, std::int64_t id);
@@ -151,7 +153,7 @@ class ThreadedPool : public Pool {
 
   void make_at(std::int64_t, const TravellingCall& call) override { call.make(*this); }
   void make_everywhere(const TravellingCall& call) override { call.make(*this); }
-  Resident made_template(Specimen& specimen) const;
+  Resident made_template(Specimen& specimen, std::int64_t first_token) const;
   Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
   std::unique_ptr<Resident> copy_of(std::int64_t source);
@@ -177,7 +179,7 @@ class ThreadedPool : public Pool {
   Settling prepared_for_ = Settling::revert;
   std::vector<std::int64_t> prepared_;  ///< ids
   Templates templates_;
-  std::int64_t next_template_;                  ///< number of this pool in the process << 32, and a count from 1
+  std::int64_t first_token_, next_template_;    ///< drawn; the next template: drawn << 32, and a count from 1
   std::uint64_t process_;                       ///< forks before this process
   std::atomic<int> calls_{0};                   ///< at work; -1: one is alone
   std::atomic<std::uint64_t> serial_{1};        ///< of calls

@@ -37,6 +37,18 @@ void commit_trial(Resident& resident, std::int64_t token) noexcept {
   resident.pending = false;
 }
 
+/// Throws Refused (stale_token). Tokens count up: one that is far from the last, or above it, was never given out here.
+void expect_known(const Tokens& tokens, std::int64_t token) {
+  if (token == tokens.committed() || tokens.find(token) != nullptr) return;
+  constexpr std::int64_t never_counted = std::int64_t(1) << 32;
+  const bool own = token > 0 && token < tokens.next() && tokens.next() - token < never_counted;
+  throw Refused(Status::stale_token, "token " + std::to_string(token) +
+                                         (own ? " names no state of this RVE any more"
+                                              : " was made by another pool or process, or for another RVE; hand in the "
+                                                "id and the token that the same trial returned") +
+                                         "; valid: " + tokens.in_words());
+}
+
 std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trials() - 1).token; }
 
 /// Row-major, xx yy zz yz xz xy whatever the dimension.
@@ -171,10 +183,7 @@ Verdict ThreadedPool::trial(const Batch& batch) {
   const auto hold = [&](std::size_t k) {
     holds[k] = held(batch.ids[k], call);  // to the end of the call, so that the same id again is a duplicate
     const Tokens& tokens = holds[k].resident().tokens;
-    if (batch.tokens_in != nullptr && batch.tokens_in[k] != tokens.committed() &&
-        tokens.find(batch.tokens_in[k]) == nullptr)
-      throw Refused(Status::stale_token, "token " + std::to_string(batch.tokens_in[k]) +
-                                             " names no state of this RVE any more; valid: " + tokens.in_words());
+    if (batch.tokens_in != nullptr) expect_known(tokens, batch.tokens_in[k]);
     entries[k] = {k, &holds[k].slot(), holds[k].slot().last_grain_steps, {}};
   };
   if (!team_.share_all(n, hold)) {  // one by one then: the same entry is refused on any number of threads

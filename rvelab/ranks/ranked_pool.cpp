@@ -195,7 +195,7 @@ std::int64_t RankedPool::add_template(Specimen specimen) {
   const Lock lock = alone();
   const std::int64_t number = own_.share().add_template(specimen);
   try {
-    expect_all_done(to_others(message<&pool::Share::add_template_as>(specimen, number)));
+    expect_all_done(to_others(message<&pool::Share::add_template_as>(specimen, number, own_.share().first_token())));
   } catch (...) {
     own_.share().release_template(number);
     exchange(to_others(message<&pool::Share::release_template>(number)));
@@ -206,7 +206,7 @@ std::int64_t RankedPool::add_template(Specimen specimen) {
 
 void RankedPool::make_room(std::size_t n) {
   // Tags are given out by librvelab.so: each library has a table of its own.
-  if (ids_.tag() == 0) ids_.restore(own_.share().tag(), {}, {});
+  if (ids_.tag() == 0) ids_.go_on_as(own_.share().first_id());
   ids_.make_room(n);
   places_.resize(std::max(places_.size(), ids_.size()));
 }
@@ -336,6 +336,7 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
       places[pool::Id::of(population.ids[k]).slot].rank = int(k % ranks);
       of_rank[k % ranks].push_back(population.ids[k]);
     }
+    ids_.go_on_as(own_.share().first_id());
     Messages messages = no_messages();
     for (std::size_t rank = 0; rank < ranks; ++rank) messages[rank] = message<&pool::Share::place>(of_rank[rank]);
     expect_all_done(messages);

@@ -41,9 +41,11 @@ inline std::unique_ptr<RankedPool> over(int ranks, const pool::Options& options 
                                       std::make_unique<pool::ThreadedPool>(options));
 }
 
+/// Its ids and tokens count, so that they are those of any other such pool, but for the tag.
 inline pool::Options one_thread() {
   pool::Options options;
   options.workers = 1;
+  options.flags = RVELAB_POOL_COUNTED_IDS;
   return options;
 }
 

@@ -101,6 +101,33 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
     }
 }
 
+TEST_CASE("ids and tokens over ranks begin with what is drawn once for all of them, and those of another are refused") {
+  std::int64_t foreign[4], foreign_token = 0;
+  for (int k = 0; k < 2; ++k) {  // the second over the same ids, but for what was drawn
+    const auto spread = over(3);
+    std::int64_t ids[4];
+    spread->spawn(spread->add_template(packed(3)), 4, ids);  // on three ranks
+    const std::int64_t token = spread->at<&pool::Share::info>(ids[0]).token;
+    for (const std::int64_t id : ids) {
+      CHECK(pool::Id::of(id).tag == pool::Id::of(ids[0]).tag);
+      CHECK(pool::Id::of(id).generation == pool::Id::of(ids[0]).generation);
+      CHECK(spread->at<&pool::Share::info>(id).token == token);
+    }
+    CHECK(token > 1);
+    const Found first = trial(*spread, {ids, ids + 4}, Draw(1).gradients(4, 1e-5));
+    for (const std::int64_t each : first.tokens) CHECK(each == token + 1);
+    if (k == 1) {
+      CHECK_THAT(refusal([&] { spread->at<&pool::Share::info>(foreign[1]); }),
+                 Catch::Matchers::StartsWith("-4") && Catch::Matchers::Contains("another pool or process made it"));
+      const std::vector<std::int64_t> tokens(4, foreign_token);
+      const Found refused = trial(*spread, {ids, ids + 4}, Draw(1).gradients(4, 1e-5), &tokens);
+      CHECK(refused.status == std::vector<std::int32_t>(4, RVELAB_E_STALE));
+    }
+    std::copy_n(ids, 4, foreign);
+    foreign_token = token;
+  }
+}
+
 TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a pool in one process") {
   for (const int ranks : {1, 3}) {
     pool::ThreadedPool one(one_thread());

@@ -45,6 +45,7 @@ GrainPool::GrainPool(rvelab::Workers& workers, const GrainOptions& options) {
   def.workers = 1;
   def.run_tasks = run_tasks;
   def.host = &workers;
+  def.flags = RVELAB_POOL_COUNTED_IDS;  // the files of a scene have the same bytes in each run
   expect_ok(options.source.create(&def, &pool_));
 }
 
