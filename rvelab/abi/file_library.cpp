@@ -18,14 +18,15 @@ using pool::Status;
 
 constexpr const char* library_name = "librvelab-h5.so.1";
 
-/// A host may have another HDF5 among its global symbols, which would answer in the place of the one that the library
-/// was built with: its own come first. Where HDF5 is part of the library no symbol is looked up, and sanitizers want
-/// theirs.
+/// Where HDF5 is among the global symbols of the process, it may be another than the library was built with, and would
+/// answer in the place of that: the library's own come first. Sanitizers want theirs first; where HDF5 is part of the
+/// library no symbol is looked up.
+int how_to_open() {
 #ifdef RVELAB_SHARED_HDF5
-constexpr int how_to_open = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
-#else
-constexpr int how_to_open = RTLD_NOW | RTLD_LOCAL;
+  if (dlsym(RTLD_DEFAULT, "H5check_version") != nullptr) return RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
+  return RTLD_NOW | RTLD_LOCAL;
+}
 
 std::mutex library_mutex;
 const h5::FileCalls* loaded_calls = nullptr;
@@ -43,10 +44,10 @@ const h5::FileCalls& file_calls() {
   const std::lock_guard lock(library_mutex);
   if (loaded_calls != nullptr) return *loaded_calls;
   const std::string beside = own_folder() + library_name;
-  void* library = dlopen(beside.c_str(), how_to_open);
+  void* library = dlopen(beside.c_str(), how_to_open());
   std::string reasons = library == nullptr ? dlerror() : "";
   if (library == nullptr) {
-    library = dlopen(library_name, how_to_open);
+    library = dlopen(library_name, how_to_open());
     if (library == nullptr) reasons += std::string("; ") + dlerror();
   }
   const auto refuse = [&](const std::string& what) {

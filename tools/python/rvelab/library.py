@@ -227,8 +227,8 @@ def id_of(given: Any) -> int:
         return int(given)
     ids = numbers_of(given)
     if len(ids) != 1:
-        raise ValueError(f"{len(ids)} ids are given, and this call is for one RVE; give one (trial, batch, run_stages and "
-                         "others take several)")
+        raise ValueError(f"{len(ids) or 'no'} ids are given, and this call is for one RVE: give one id (trial, batch, "
+                         "run_stages, cost and release take several)")
     return int(ids[0])
 
 

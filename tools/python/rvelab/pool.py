@@ -5,7 +5,7 @@ import json
 import os
 import sys
 import tomllib
-from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
+from ctypes import byref, c_char_p, c_double, c_int32, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
 from typing import Any, Iterable, Mapping
 
 import numpy as np
@@ -31,7 +31,7 @@ for _name, _arguments in {
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
         "run_stages": (_pool, _number, _ids, c_char_p, c_void_p, c_void_p),
-        "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
     getattr(library, "rvelab_" + _name).argtypes = _arguments
