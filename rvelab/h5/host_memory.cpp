@@ -35,8 +35,12 @@ void operator delete(void* memory) noexcept {
   call(memory);
 }
 
+void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
+
 void operator delete(void* memory, std::align_val_t edge) noexcept {
   static auto* const call = of_host<void(void*, std::align_val_t)>("_ZdlPvSt11align_val_t");
   call(memory, edge);
 }
+
+void operator delete(void* memory, std::size_t, std::align_val_t edge) noexcept { operator delete(memory, edge); }
 #endif

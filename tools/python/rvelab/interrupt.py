@@ -2,15 +2,17 @@
 thread beside reads what Python writes to its wake-up descriptor, and lets the call end."""
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import socket
 import threading
-import time
 from ctypes import c_void_p
+from threading import get_ident
+from time import monotonic
 from typing import Any
 
-from .library import call, library
+from .library import call, library, tell
 
 _lock = threading.Lock()
 _main = threading.main_thread().ident
@@ -25,25 +27,36 @@ def _watch(received: socket.socket) -> None:
     global _told
     while signals := received.recv(64):
         if _theirs is not None:
-            os.write(_theirs, signals)
+            with contextlib.suppress(OSError):
+                os.write(_theirs, signals)
         if signal.SIGINT in signals and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             with _lock:
-                if _working is not None:
-                    library.rvelab_interrupt(_working, 1)
-                    _told = True
+                pool = _working
+                if pool is not None:
+                    _told = True  # from here on the end of the call waits for what follows
+                    if _working is pool:
+                        library.rvelab_interrupt(pool, 1)
+
+
+def _go_on(pool: c_void_p) -> None:
+    global _told
+    with _lock:
+        library.rvelab_interrupt(pool, 0)
+        _told = False
 
 
 def _listen() -> None:
     global _ends, _theirs, _look_at
-    if time.monotonic() < _look_at:
-        return
     if _ends is None:
         _ends = socket.socketpair()
         _ends[1].setblocking(False)
         threading.Thread(target=_watch, args=_ends[:1], name="rvelab: Ctrl-C", daemon=True).start()
-    before = signal.set_wakeup_fd(_ends[1].fileno(), warn_on_full_buffer=False)
+    try:
+        before = signal.set_wakeup_fd(_ends[1].fileno(), warn_on_full_buffer=False)
+    except ValueError:  # an interpreter that takes no signals
+        before = -1
     if before in (-1, _ends[1].fileno()):
-        _look_at = time.monotonic() + 0.1
+        _look_at = monotonic() + 0.1
     else:
         _theirs = before
 
@@ -52,32 +65,30 @@ def _in_child() -> None:
     global _lock, _main, _working, _told, _ends, _theirs, _look_at
     if _ends is not None:
         signal.set_wakeup_fd(-1)  # the one of the parent
-    _lock, _main, _working, _told, _ends = threading.Lock(), threading.get_ident(), None, False, None
+    _lock, _main, _working, _told, _ends = threading.Lock(), get_ident(), None, False, None
     _theirs, _look_at = None, 0.0
 
 
 os.register_at_fork(after_in_child=_in_child)
 
 
-def call_until_interrupted(name: str, pool: c_void_p, *arguments: Any, **more: Any) -> None:
+def long_call(name: str, pool: c_void_p, *arguments: Any, batch: Any = None, result: Any = None) -> None:
     """library.call for calls that may be long. Of the main thread Ctrl-C ends them with KeyboardInterrupt, unless the
     program has a handler of its own for SIGINT, which runs when the call has ended."""
-    global _working, _told, _theirs
-    if threading.get_ident() != _main:
-        return call(name, pool, *arguments, **more)
-    try:
+    global _working, _theirs
+    if get_ident() != _main:
+        return call(name, pool, *arguments, batch=batch, result=result)
+    if monotonic() > _look_at:
         _listen()
-    except ValueError:  # an interpreter that takes no signals
-        return call(name, pool, *arguments, **more)
     _working = pool
     try:
-        call(name, pool, *arguments, **more)
+        status = getattr(library, "rvelab_" + name)(pool, *arguments)
     finally:
-        with _lock:
-            _working = None
-            if _told:
-                library.rvelab_interrupt(pool, 0)
-                _told = False
+        _working = None
+        if _told:
+            _go_on(pool)
         if _theirs is not None:
             signal.set_wakeup_fd(_theirs)
             _theirs = None
+    if status != 0:
+        tell(status, name, pool, result if batch is None else batch, batch)

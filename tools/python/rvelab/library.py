@@ -186,12 +186,18 @@ def call(name: str, *arguments: Any, batch: Batch | Mixed | None = None, result:
     """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text. batch,
     result: what it writes to, for error.batch and warning.result."""
     status = getattr(library, "rvelab_" + name)(*arguments)
-    if status == 0:
-        return
+    if status != 0:
+        tell(status, name, arguments[0], result if batch is None else batch, batch)
+
+
+def tell(status: int, name: str, pool: Any, result: Any, batch: Any) -> None:
+    """The status of a call as a warning or an error."""
+    if isinstance(pool, c_void_p) and not pool:
+        raise RvelabError("this pool was closed, or the Rve that it is of; make another, or close it later", status)
     text, kind = library.rvelab_last_error().decode(), library.rvelab_status_name(status).decode()
     if status < 0:
         raise {-1: Discard, -5: StaleToken, -10: OutOfMemory}.get(status, RvelabError)(f"{kind}: {text}", status, batch)
-    warn(RvelabWarning(f"{kind}: {_warnings.get(status, text)}", status, text), _level_of_caller(), result if batch is None else batch,
+    warn(RvelabWarning(f"{kind}: {_warnings.get(status, text)}", status, text), _level_of_caller(), result,
          "its trials are pending" if name == "trial" else "the state is that after the call")
 
 

@@ -11,7 +11,7 @@ from typing import Any, Iterable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .interrupt import call_until_interrupted
+from .interrupt import long_call
 from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError,
                       RvelabWarning, bytes_of, call, gradients_of, id_of, library, numbers_of)
 from .program import flat, plain
@@ -84,17 +84,6 @@ class Pool:
             setattr(definition, name, value)
         call("pool_create", byref(definition), byref(self._pool))
 
-    def _open(self) -> c_void_p:
-        if not self._pool:
-            raise RvelabError("this pool was closed, or the Rve that it is of; make another, or close it later", -3)
-        return self._pool
-
-    def _call(self, name: str, *arguments: Any) -> None:
-        call(name, self._open(), *arguments)
-
-    def _long_call(self, name: str, *arguments: Any, **more: Any) -> None:
-        call_until_interrupted(name, self._open(), *arguments, **more)
-
     def close(self) -> None:
         """Joins the workers and frees every RVE. A second time it does nothing; later calls of the pool raise."""
         if self._pool:
@@ -117,45 +106,45 @@ class Pool:
         """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
         made = c_int64()
         if isinstance(source, (str, os.PathLike)):
-            self._call("template_load", os.fsencode(source), byref(made))
+            call("template_load", self._pool, os.fsencode(source), byref(made))
         else:
             snapshot = bytes_of(source)
-            self._call("template_from_snapshot", snapshot, len(snapshot), byref(made))
+            call("template_from_snapshot", self._pool, snapshot, len(snapshot), byref(made))
         return made.value
 
     def release_template(self, template: int) -> None:
         """Ends a template; the RVEs that were made from it stay."""
-        self._call("template_release", template)
+        call("template_release", self._pool, template)
 
     def spawn(self, template: int, n: int = 1) -> np.ndarray:
         """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
         ids = np.zeros(max(n, 0), np.int64)
-        self._long_call("spawn", template, n, ids.ctypes.data)
+        long_call("spawn", self._pool, template, n, ids.ctypes.data)
         return ids
 
     def clone(self, rve: int) -> int:
         """A second RVE in the committed state of the first, with its tokens."""
         made = c_int64()
-        self._call("clone", id_of(rve), byref(made))
+        call("clone", self._pool, id_of(rve), byref(made))
         return made.value
 
     def release(self, rves: ArrayLike) -> None:
         """Ends RVEs: all of those named, or none."""
         ids = numbers_of(rves)
-        self._call("release", len(ids), ids.ctypes.data)
+        call("release", self._pool, len(ids), ids.ctypes.data)
 
     def ids(self) -> np.ndarray:
         """Of all RVEs, in the order of their slots."""
         n = c_int64()
-        self._call("ids", 0, None, byref(n))
+        call("ids", self._pool, 0, None, byref(n))
         ids = np.zeros(n.value, np.int64)
-        self._call("ids", n.value, ids.ctypes.data, byref(n))
+        call("ids", self._pool, n.value, ids.ctypes.data, byref(n))
         return ids
 
     def apply(self, rve: int, dH: ArrayLike, dt: float = 0) -> np.ndarray:
         """Trial and commit in one: sigma (3, 3) after dH (3, 3) over dt."""
         gradient, sigma = gradients_of(dH, (3, 3)), np.empty((3, 3))
-        self._long_call("apply", id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data, result=sigma)
+        long_call("apply", self._pool, id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data, result=sigma)
         return sigma
 
     def trial(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, tokens: ArrayLike | None = None,
@@ -183,7 +172,7 @@ class Pool:
         found.tokens.fill(0)
         batch.dt_scale, batch.status = found.dt_scale.ctypes.data, found.status.ctypes.data
         batch.tokens_out = found.tokens.ctypes.data
-        self._long_call("trial", byref(batch), batch=found)
+        long_call("trial", self._pool, byref(batch), batch=found)
         return found
 
     def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: str | Iterable[str] = ()) -> Batch:
@@ -220,13 +209,13 @@ class Pool:
         for name in ("sigma", "dH", "held_error", "error_estimate", "status"):
             setattr(mixed, name, getattr(found, name).ctypes.data)
         mixed.tokens_out = found.tokens.ctypes.data
-        self._long_call("apply_mixed", byref(mixed), batch=found)
+        long_call("apply_mixed", self._pool, byref(mixed), batch=found)
         return found
 
     def relax(self, rve: int, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
         """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small; warns if it is not."""
         sigma = np.empty((3, 3))
-        self._long_call("relax", id_of(rve), unbalanced, max_substeps, sigma.ctypes.data, result=sigma)
+        long_call("relax", self._pool, id_of(rve), unbalanced, max_substeps, sigma.ctypes.data, result=sigma)
         return sigma
 
     def commit(self, rves: ArrayLike | None = None) -> None:
@@ -239,49 +228,49 @@ class Pool:
 
     def _settle(self, name: str, rves: ArrayLike | None) -> None:
         ids = None if rves is None else numbers_of(rves)
-        self._long_call(name, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
+        long_call(name, self._pool, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
 
     def info(self, rve: int) -> Info:
         """Measures of the committed state as attributes: void_ratio, p, q, fabric (3, 3), token ... (see Info)."""
         found = Info()
         call("info_init", byref(found), sizeof(found))
-        self._call("get_info", id_of(rve), byref(found))
+        call("get_info", self._pool, id_of(rve), byref(found))
         return found
 
     def arrays(self, rve: int) -> dict[str, Array]:
         """All arrays of the committed state by name: measures of the cell, columns of grains and contacts; unit,
         meaning, shape() of each."""
         n = c_int64()
-        self._call("list_arrays", id_of(rve), 0, None, byref(n))
+        call("list_arrays", self._pool, id_of(rve), 0, None, byref(n))
         found = (Array * n.value)()
         for each in found:
             call("array_init", byref(each), sizeof(each))
-        self._call("list_arrays", id_of(rve), n.value, byref(found), byref(n))
+        call("list_arrays", self._pool, id_of(rve), n.value, byref(found), byref(n))
         return {each.name.decode(): each for each in found}
 
     def array(self, rve: int, name: str) -> np.ndarray:
         """One of them, laboratory frame: "void_ratio", "grains/position_m" (n, 3), "contacts/force_N" (m, 3)."""
         about, need = self.arrays(rve).get(name), c_size_t()
         if about is None:
-            self._call("get_array", id_of(rve), name.encode(), None, 0, byref(need))  # says which there are
+            call("get_array", self._pool, id_of(rve), name.encode(), None, 0, byref(need))  # says which there are
             raise RvelabError(f"no array {name}")
         values = np.empty(about.shape(), np.int64 if about.type else np.float64)
-        self._call("get_array", id_of(rve), name.encode(), values.ctypes.data, values.nbytes, byref(need))
+        call("get_array", self._pool, id_of(rve), name.encode(), values.ctypes.data, values.nbytes, byref(need))
         return values
 
     def parameters(self, rve: int) -> dict[str, Any]:
         """Parameters of law, damping, solver and materials by their keys: {"contact": {"law": ...}, "damping": ...,
         "solver": ..., "material": [{"name": ...}, ...]}."""
         need = c_size_t()
-        self._call("get_parameters", id_of(rve), None, 0, byref(need))
+        call("get_parameters", self._pool, id_of(rve), None, 0, byref(need))
         text = create_string_buffer(need.value)
-        self._call("get_parameters", id_of(rve), text, need.value, byref(need))
+        call("get_parameters", self._pool, id_of(rve), text, need.value, byref(need))
         return tomllib.loads(text.value.decode())
 
     def set_parameters(self, rve: int, settings: Mapping[str, Any]) -> None:
         """Sets some of them, all others stay: {"solver.relative_tolerance": 1e-3, "material.sand.friction": 0.4}, or
         tables as parameters() returns them. The state has a new token; a pending trial is reverted."""
-        self._call("set_parameters", id_of(rve), parameters_text(settings).encode())
+        call("set_parameters", self._pool, id_of(rve), parameters_text(settings).encode())
 
     def run_stages(self, rves: ArrayLike, stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> np.ndarray:
         """Runs stages of a test on RVEs, by the keys of protocols: {"kind": "cement", "young_modulus_Pa": 50e6, ...}, a
@@ -290,7 +279,7 @@ class Pool:
         on."""
         ids = numbers_of(rves)
         sigma = np.full((len(ids), 3, 3), np.nan)
-        self._long_call("run_stages", len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None,
+        long_call("run_stages", self._pool, len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None,
                         result=sigma)
         return sigma
 
@@ -298,27 +287,27 @@ class Pool:
         """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""
         ids = numbers_of(rves)
         made = np.zeros(len(ids), np.int64)
-        self._call("cost", len(ids), ids.ctypes.data, made.ctypes.data)
+        call("cost", self._pool, len(ids), ids.ctypes.data, made.ctypes.data)
         return made
 
     def snapshot(self, rve: int) -> bytes:
         """The committed state with its tokens, bitwise, for the same build of rvelab; across builds: write()."""
         need = c_size_t()
-        self._call("snapshot_save", id_of(rve), None, 0, byref(need))
+        call("snapshot_save", self._pool, id_of(rve), None, 0, byref(need))
         buffer = create_string_buffer(need.value)
-        self._call("snapshot_save", id_of(rve), buffer, need.value, byref(need))
+        call("snapshot_save", self._pool, id_of(rve), buffer, need.value, byref(need))
         return buffer.raw[:need.value]
 
     def restore(self, rve: int, snapshot: bytes) -> None:
         """The RVE takes the state of a snapshot, of any specimen; a pending trial is discarded."""
         held = bytes_of(snapshot)
-        self._call("snapshot_load", id_of(rve), held, len(held))
+        call("snapshot_load", self._pool, id_of(rve), held, len(held))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """All RVEs with ids and tokens into a pool file (HDF5)."""
-        self._long_call("pool_write", os.fsencode(path))
+        long_call("pool_write", self._pool, os.fsencode(path))
 
     def read(self, path: str | os.PathLike[str]) -> np.ndarray:
         """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
-        self._long_call("pool_read", os.fsencode(path))
+        long_call("pool_read", self._pool, os.fsencode(path))
         return self.ids()
