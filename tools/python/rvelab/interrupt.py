@@ -20,7 +20,7 @@ _working: c_void_p | None = None  # the pool that the main thread is at work in
 _told = False  # that pool was interrupted
 _ends: tuple[socket.socket, socket.socket] | None = None
 _theirs: int | None = None  # the descriptor of an event loop, which has its place again after the call
-_look_at = 0.0  # s, when to look again whose descriptor is there: it takes as long as a short call
+_look_at = 0.0  # s, when to look again whose descriptor is there, which takes as long as a short call
 
 
 def _watch(received: socket.socket) -> None:
@@ -56,7 +56,7 @@ def _listen() -> None:
     except ValueError:  # an interpreter that takes no signals
         before = -1
     if before in (-1, _ends[1].fileno()):
-        _look_at = monotonic() + 0.1
+        _look_at = monotonic() + 0.002
     else:
         _theirs = before
 
@@ -65,6 +65,8 @@ def _in_child() -> None:
     global _lock, _main, _working, _told, _ends, _theirs, _look_at
     if _ends is not None:
         signal.set_wakeup_fd(-1)  # the one of the parent
+        for end in _ends:
+            end.close()
     _lock, _main, _working, _told, _ends = threading.Lock(), get_ident(), None, False, None
     _theirs, _look_at = None, 0.0
 
