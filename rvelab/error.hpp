@@ -1,15 +1,21 @@
 // Errors of the library. Each message names the value found, the value allowed and what to do.
 #pragma once
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace rvelab {
 
+/// A stream for text with numbers, as C writes them: a locale that a host has made the global one may group digits.
+struct TextStream : std::ostringstream {
+  TextStream() { imbue(std::locale::classic()); }
+};
+
 /// A number in a message, to six digits.
 inline std::string in_words(double value) {
-  std::ostringstream text;
+  TextStream text;
   text << value;
   return text.str();
 }

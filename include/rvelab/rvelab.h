@@ -50,7 +50,7 @@ extern "C" {
 /* ---- version ---- */
 
 #define RVELAB_ABI_MAJOR 1
-#define RVELAB_ABI_MINOR 3
+#define RVELAB_ABI_MINOR 4
 
 /* major << 16 | minor of the library at hand. Same major: a program built with an older header runs. */
 int32_t rvelab_abi_version(void);
@@ -95,6 +95,7 @@ int64_t rvelab_capabilities(void);
 #define RVELAB_E_LIBRARY (-15)      /* librvelab-h5.so was not found or does not fit */
 #define RVELAB_E_LIMIT (-16)        /* no slot or pool tag is left */
 #define RVELAB_E_INTERNAL (-17)     /* a defect of rvelab: please report its text */
+#define RVELAB_E_INTERRUPTED (-18)  /* rvelab_interrupt stopped it; since 1.4 */
 
 /* "RVELAB_OK" and so on; "unknown status" for a number that this version does not know. Never null. */
 const char* rvelab_status_name(int32_t status);
@@ -147,6 +148,14 @@ int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool);
 
 /* Joins the workers and frees everything. Null is allowed. RVELAB_E_BUSY while a call is at work: nothing is freed. */
 int32_t rvelab_pool_destroy(rvelab_pool* pool);
+
+/* Stops long calls, since 1.4. on = 1: calls of this pool that are under way end within a few sub-steps, and later ones
+ * at their first, with RVELAB_E_INTERRUPTED, until on = 0. An RVE that was interrupted is as before the call, bit for
+ * bit; of a call on many, those that were done stay so, and the status of each tells. What makes no sub-step goes on
+ * (measures, snapshots, a tangent); rvelab_spawn, rvelab_pool_write and rvelab_pool_read stop between two RVEs and
+ * leave pool and file as they were. From any thread, beside any other call but rvelab_pool_destroy, and from a signal
+ * handler. Of a pool over ranks: the RVEs of this process. */
+int32_t rvelab_interrupt(rvelab_pool* pool, int32_t on);
 
 /* ---- population ----
  *

@@ -1,5 +1,5 @@
-// The boundary between a host in C and the library: inside, the default floating-point environment; outside, a status
-// and a text in the place of exceptions.
+// The boundary between a host in C and the library: inside, the default floating-point environment and the locale of C;
+// outside, a status and a text in the place of exceptions.
 //
 // A rvelab_pool* is a pool::Pool*. The struct of the header is never defined, so that no layout of a pool is part of
 // the interface.
@@ -9,6 +9,7 @@
 
 #include "rvelab/pool/floating_point.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
+#include "rvelab/threads/classic_locale.hpp"
 
 namespace rvelab::abi {
 
@@ -21,6 +22,7 @@ std::int32_t recorded_failure() noexcept;
 template <class Call>
 std::int32_t at_c_boundary(Call&& call) noexcept {
   const pool::FloatingPoint environment;
+  const ClassicLocale locale;
   try {
     if constexpr (std::is_void_v<decltype(call())>) {
       call();
@@ -66,7 +68,7 @@ std::string parameters_text(const Specimen& specimen);
 void set_parameters(Specimen& specimen, const std::string& text);
 /// As h5::check_stages and h5::run_stages.
 void check_stages(const std::string& text);
-std::int64_t run_stages(Specimen& specimen, const std::string& text);
+std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop);
 
 // librvelab.so makes the share of a rank for librvelab-mpi.so, of the same version, and hands its pool to the host. No
 // part of the interface of the host.

@@ -18,6 +18,16 @@ using pool::Status;
 
 constexpr const char* library_name = "librvelab-h5.so.1";
 
+/// Where HDF5 is among the global symbols of the process, it may be another than the library was built with, and would
+/// answer in the place of that: the library's own come first. Sanitizers want theirs first; where HDF5 is part of the
+/// library no symbol is looked up.
+int how_to_open() {
+#ifdef RVELAB_SHARED_HDF5
+  if (dlsym(RTLD_DEFAULT, "H5check_version") != nullptr) return RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
+#endif
+  return RTLD_NOW | RTLD_LOCAL;
+}
+
 std::mutex library_mutex;
 const h5::FileCalls* loaded_calls = nullptr;
 
@@ -34,10 +44,10 @@ const h5::FileCalls& file_calls() {
   const std::lock_guard lock(library_mutex);
   if (loaded_calls != nullptr) return *loaded_calls;
   const std::string beside = own_folder() + library_name;
-  void* library = dlopen(beside.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = dlopen(beside.c_str(), how_to_open());
   std::string reasons = library == nullptr ? dlerror() : "";
   if (library == nullptr) {
-    library = dlopen(library_name, RTLD_NOW | RTLD_LOCAL);
+    library = dlopen(library_name, how_to_open());
     if (library == nullptr) reasons += std::string("; ") + dlerror();
   }
   const auto refuse = [&](const std::string& what) {
@@ -56,6 +66,12 @@ const h5::FileCalls& file_calls() {
     dlclose(library);
     refuse(found);
   }
+  const void* const own_hdf5 = dlsym(library, "H5check_version");
+  if (own_hdf5 != nullptr && own_hdf5 != calls->hdf5)
+    throw Refused(Status::no_library, std::string(library_name) +
+                                          " was loaded by the host, and another HDF5 of the host answers for the one "
+                                          "that it was built with; do not link or load it: librvelab.so does at the "
+                                          "first call for a file");
   loaded_calls = calls;
   return *calls;
 }
@@ -102,9 +118,9 @@ void check_stages(const std::string& text) {
   file_calls().check_stages(text);
 }
 
-std::int64_t run_stages(Specimen& specimen, const std::string& text) {
+std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop) {
   expect_memory_for(text);
-  return file_calls().run_stages(specimen, text);
+  return file_calls().run_stages(specimen, text, stop);
 }
 
 void write_pool(pool::Pool& pool, const std::string& path) {

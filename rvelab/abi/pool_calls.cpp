@@ -78,6 +78,13 @@ int32_t rvelab_pool_destroy(rvelab_pool* handle) {
   });
 }
 
+int32_t rvelab_interrupt(rvelab_pool* handle, int32_t on) {
+  // Without the boundary of other calls: a signal handler may not set the floating-point environment.
+  if (handle == nullptr) return of_pool(handle, {}, [](pool::Pool&) {});
+  reinterpret_cast<pool::Pool*>(handle)->interrupt(on != 0);
+  return RVELAB_OK;
+}
+
 int32_t rvelab_template_load(rvelab_pool* handle, const char* path, int64_t* tmpl) {
   return of_pool(handle, {{path, "path"}, {tmpl, "tmpl"}}, [&](pool::Pool& rves) {
     rves.expect_this_process();

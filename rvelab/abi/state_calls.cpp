@@ -136,7 +136,7 @@ int32_t rvelab_run_stages(rvelab_pool* handle, int64_t n, const int64_t* ids, co
     return pool::each_entry(rves, "run_stages", n, asked.data(), status, [&](std::size_t m, pool::Verdict&) {
       change(rves, asked[m], [&](pool::RveState& state) {
         state.last.inertial_number = 0;
-        return run_stages(state.specimen, toml);
+        return run_stages(state.specimen, toml, rves.interrupted());
       });
       if (sigma == nullptr) return;
       const rvelab_info info = rves.at<&pool::Share::info>(asked[m]);

@@ -49,7 +49,7 @@ PressureResult evaluate(const records::TestResult& test, int dimension) {
 
 /// "p = 10000 Pa" in front of a message.
 std::string at_pressure(const protocol::Protocol& protocol, const char* message) {
-  std::ostringstream text;
+  TextStream text;
   text << "p = " << protocol.pressure << " Pa: " << message;
   return text.str();
 }

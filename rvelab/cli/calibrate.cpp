@@ -88,7 +88,7 @@ std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments
   std::vector<protocol::Protocol> protocols;
   std::set<std::string> names;
   for (const double pressure : pressures) {
-    std::ostringstream assignment;
+    TextStream assignment;
     assignment.precision(17);
     assignment << "test.pressure_Pa=" << pressure;
     if (!names.insert(record_file_name(pressure)).second) {

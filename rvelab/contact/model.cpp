@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "rvelab/contact/impact.hpp"
+#include "rvelab/error.hpp"
 
 namespace rvelab {
 namespace {
@@ -167,7 +168,7 @@ void check_parameters(const ContactModel& model, const Damping& damping, const s
 }
 
 std::string in_words(const Interval& i) {
-  std::ostringstream words;
+  TextStream words;
   if (i.low == -no_bound && i.high == no_bound)
     words << "any finite number";
   else if (i.low == -no_bound)

@@ -1,5 +1,7 @@
 #include "rvelab/h5/file_calls.hpp"
 
+#include <dlfcn.h>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -127,7 +129,14 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
 
 const rvelab::h5::FileCalls* rvelab_h5_file_calls() {
   using namespace rvelab::h5;
-  static const FileCalls calls{rvelab::io::version,           rvelab::io::read_specimen,    write_pool,   read_pool,
-                               rvelab::keys::parameters_text, rvelab::keys::set_parameters, check_stages, run_stages};
+  static const FileCalls calls{rvelab::io::version,
+                               rvelab::io::read_specimen,
+                               write_pool,
+                               read_pool,
+                               rvelab::keys::parameters_text,
+                               rvelab::keys::set_parameters,
+                               check_stages,
+                               run_stages,
+                               dlsym(RTLD_DEFAULT, "H5check_version")};
   return &calls;
 }

@@ -2,6 +2,7 @@
 // and exceptions cross between them.
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "rvelab/pool/pool.hpp"
@@ -19,7 +20,8 @@ struct FileCalls {
   std::string (*parameters_text)(const Specimen& specimen);  ///< this and the next: keys/parameters.hpp
   void (*set_parameters)(Specimen& specimen, const std::string& text);
   void (*check_stages)(const std::string& text);  ///< this and the next: run_stages.hpp
-  std::int64_t (*run_stages)(Specimen& specimen, const std::string& text);
+  std::int64_t (*run_stages)(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop);
+  const void* hdf5;  ///< its function H5check_version, of whatever HDF5 it is
 };
 
 /// Name of the function that librvelab-h5.so exports.

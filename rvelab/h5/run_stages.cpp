@@ -30,15 +30,20 @@ protocol::Protocol read_stages(const std::string& text) {
 
 void check_stages(const std::string& text) { read_stages(text); }
 
-std::int64_t run_stages(Specimen& specimen, const std::string& text) {
+std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop) {
   const protocol::Protocol protocol = read_stages(text);
   try {
-    protocol::TestRun run = protocol::run_protocol(protocol, specimen);
+    protocol::Watch watch;
+    watch.stop = &stop;
+    protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
+    if (!run.complete) throw Interrupted();
     specimen = std::move(run.end_state);
     return std::int64_t(run.result.grain_steps);
   } catch (const InputError&) {
     throw;
   } catch (const IncrementFailed&) {
+    throw;
+  } catch (const Interrupted&) {
     throw;
   } catch (
       const Error& error) {  // a stage that does not get there: the state is as before, as where an increment fails

@@ -1,6 +1,7 @@
 // Stages of a test, as text of TOML, on a specimen.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -13,7 +14,7 @@ void check_stages(const std::string& text);
 
 /// Runs them as `rvelab run` does; the specimen becomes its end state. The text is that of a protocol; [test] may be
 /// missing. Returns the grain-steps made. InputError: keys, values, what does not go with the specimen.
-/// IncrementFailed: a stage cannot be carried out. The specimen is then as it was.
-std::int64_t run_stages(Specimen& specimen, const std::string& text);
+/// IncrementFailed: a stage cannot be carried out. Interrupted: `stop` came true. The specimen is then as it was.
+std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop);
 
 }  // namespace rvelab::h5

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "rvelab/error.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/specimen/field_layout.hpp"
@@ -24,7 +25,7 @@ bool in_use(const Specimen& specimen, const KeyEntry& entry) {
 }
 
 std::string table_text(const Specimen& specimen, const Material& material, const std::string& table) {
-  std::ostringstream text;
+  TextStream text;
   for (const KeyEntry& entry : key_entries()) {
     if (entry.key.table != table || !in_use(specimen, entry)) continue;
     with_field(entry, specimen, material, [&]<class Value>(const Value& value) {

@@ -25,7 +25,7 @@ bool holds(const Choices& words, const std::string& word) {
 }  // namespace
 
 std::string as_toml(double value) {
-  std::ostringstream text;
+  TextStream text;
   text.precision(15);
   text << value;
   return text.str();
@@ -47,13 +47,13 @@ std::string written(const toml::node& node) {
     const auto end = std::to_chars(std::begin(shortest), std::end(shortest), node.as_floating_point()->get()).ptr;
     return {shortest, end};
   }
-  std::ostringstream text;
+  TextStream text;
   node.visit([&](const auto& value) { text << value; });
   return shortened(text.str());
 }
 
 std::string written_file(const toml::table& file) {
-  std::ostringstream text;
+  TextStream text;
   text << toml::toml_formatter{file} << "\n";
   return text.str();
 }

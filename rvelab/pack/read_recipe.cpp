@@ -142,7 +142,7 @@ void read_clump(TableReader& reader, GrainFraction& fraction, const Recipe& reci
     if (clump.size() > 4 && clump.ends_with(".csv")) {
       std::ifstream file(clump);
       if (!file) throw InputError("clump = " + as_toml(clump) + ": the file cannot be read; give its path");
-      std::ostringstream text;
+      TextStream text;
       text << file.rdbuf();
       fraction.clump = clump_of(clump, read_members(text.str(), clump), d);
     } else {
@@ -212,7 +212,7 @@ void read_grains(const toml::table& file, Recipe& recipe, bool ellipsoids, toml:
     }
   }
   if (!recipe.fractions.empty() && !(std::abs(shares - 1) <= 1e-6)) {
-    std::ostringstream text;
+    TextStream text;
     text << "the values of grains.share add up to " << shares << "; allowed: 1; correct them";
     errors.push_back({line_of(*node), text.str()});
   }

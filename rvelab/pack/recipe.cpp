@@ -63,7 +63,7 @@ void check_recipe(const Recipe& recipe) {
     shares += fraction.share;
   }
   if (!(std::abs(shares - 1) <= 1e-6)) {
-    std::ostringstream text;
+    TextStream text;
     text << "the shares of the grains add up to " << shares << "; allowed: 1; correct grains.share";
     throw InputError(text.str());
   }

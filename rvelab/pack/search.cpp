@@ -66,7 +66,7 @@ enum class End { draws_spent, out_of_reach };
 Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_t failed, End end) {
   const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
-  std::ostringstream text;
+  TextStream text;
   text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
        << " in " << draws.size() + failed << " packings"
        << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "") << "; reached: " << lowest->void_ratio

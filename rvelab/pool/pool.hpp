@@ -5,6 +5,7 @@
 // InvalidIncrement and IncrementFailed too; what they change is then as it was.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -88,6 +89,9 @@ class Pool {
   virtual void expect_this_process() const = 0;
   /// The last call before the end: Refused (busy) while another is at work; all later ones are busy.
   virtual void close() = 0;
+  /// True: the sub-steps of this process end with Interrupted, until it is false again. For signal handlers too.
+  virtual void interrupt(bool on) noexcept = 0;
+  virtual const std::atomic<bool>& interrupted() const noexcept = 0;
 
   /// What `function`(id, arguments...) of the share that holds the RVE returns; the function stands in ShareCalls.
   template <auto function, class... Arguments>

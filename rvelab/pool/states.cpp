@@ -19,14 +19,15 @@ std::vector<std::byte> bytes_of(Resident& resident) {
   return to_bytes(state, resident.rve.save());
 }
 
-std::unique_ptr<Resident> opened(const RveState& state) {
+}  // namespace
+
+std::unique_ptr<Resident> ThreadedPool::opened(const RveState& state) const {
   auto resident =
       std::make_unique<Resident>(Resident{Rve(state.specimen), state.tokens, state.initial_void_ratio, state.last});
+  resident->rve.watch(&interrupted_);
   resident->rve.release();
   return resident;
 }
-
-}  // namespace
 
 rvelab_info ThreadedPool::info(std::int64_t id) {
   const AtWork working(*this);
@@ -119,15 +120,20 @@ void ThreadedPool::take_state(const Hold& hold, std::span<const std::byte> snaps
 void ThreadedPool::write(const std::function<void(const Population&, const StateOf&)>& writer) {
   const Alone alone(*this);
   const Population population{slots_.tag(), slots_.generations(), slots_.all()};
-  writer(population, [&](std::size_t k) { return bytes_of(*slots_.at(population.ids[k]).resident); });
+  writer(population, [&](std::size_t k) {
+    expect_not_interrupted();
+    return bytes_of(*slots_.at(population.ids[k]).resident);
+  });
 }
 
 void ThreadedPool::read(const std::function<Population(const TakeState& take)>& reader) {
   const Alone alone(*this);
   expect_empty(slots_.population());
   Slots::Residents states;
-  const Population population =
-      reader([&](std::span<const std::byte> bytes) { states.push_back(opened(rve_state_of(bytes))); });
+  const Population population = reader([&](std::span<const std::byte> bytes) {
+    expect_not_interrupted();
+    states.push_back(opened(rve_state_of(bytes)));
+  });
   expect_whole(population, states.size());
   slots_.restore(population.tag, population.generations, population.ids, std::move(states));
 }

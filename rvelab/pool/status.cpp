@@ -23,6 +23,8 @@ Status status_of_exception(char* text, std::size_t size) noexcept {
     throw;
   } catch (const Refused& refused) {
     return told(refused.status, refused.what(), text, size);
+  } catch (const Interrupted&) {
+    return told(Status::interrupted, "stopped by rvelab_interrupt; the RVE is as before the call", text, size);
   } catch (const IncrementFailed& failed) {
     return told(Status::discard, failed.what(), text, size);
   } catch (const InputError& error) {

@@ -23,7 +23,7 @@ namespace rvelab::pool {
                           each(unsupported, RVELAB_E_UNSUPPORTED) each(small_buffer, RVELAB_E_BUFFER)              \
                               each(bad_snapshot, RVELAB_E_SNAPSHOT) each(bad_file, RVELAB_E_FILE)                  \
                                   each(no_library, RVELAB_E_LIBRARY) each(no_slot, RVELAB_E_LIMIT)                 \
-                                      each(internal, RVELAB_E_INTERNAL)
+                                      each(internal, RVELAB_E_INTERNAL) each(interrupted, RVELAB_E_INTERRUPTED)
 
 #define RVELAB_ENUMERATOR(status, number) status = number,
 enum class Status : std::int32_t { RVELAB_STATUSES(RVELAB_ENUMERATOR) };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rvelab/pool/floating_point.hpp"
+#include "rvelab/threads/classic_locale.hpp"
 
 namespace rvelab::pool {
 
@@ -40,6 +41,7 @@ struct Round {
 
   static void work(void* round, std::int64_t index) noexcept {
     const FloatingPoint environment;
+    const ClassicLocale locale;
     Round& self = *static_cast<Round*>(round);
     if (index < 0 || std::size_t(index) >= self.begun.size() || self.begun[std::size_t(index)].exchange(true)) {
       self.repeated = true;

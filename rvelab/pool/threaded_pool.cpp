@@ -128,6 +128,7 @@ void ThreadedPool::rest_another() noexcept {
 Resident ThreadedPool::made_template(Specimen& specimen, std::int64_t first_token) const {
   override_settings(specimen, options_);
   Resident made{Rve(specimen), Tokens(first_token)};
+  made.rve.watch(&interrupted_);
   made.initial_void_ratio = void_ratio(made.rve.network());
   made.rve.release();
   return made;
@@ -169,7 +170,10 @@ Slots::Residents ThreadedPool::made_of(std::int64_t of_template, std::int64_t n)
   expect_spawn(n);
   Slots::Residents made;
   made.reserve(std::size_t(n));
-  while (std::int64_t(made.size()) < n) made.push_back(std::make_unique<Resident>(source));
+  while (std::int64_t(made.size()) < n) {
+    expect_not_interrupted();
+    made.push_back(std::make_unique<Resident>(source));
+  }
   return made;
 }
 

@@ -73,6 +73,8 @@ class ThreadedPool : public Pool {
   void read(const std::function<Population(const TakeState& take)>& reader) override;
   void expect_this_process() const override;
   void close() override;
+  void interrupt(bool on) noexcept override { interrupted_ = on; }
+  const std::atomic<bool>& interrupted() const noexcept override { return interrupted_; }
 
   /// Ends a template.
   virtual void release_template(std::int64_t of_template);
@@ -172,7 +174,13 @@ class ThreadedPool : public Pool {
   void expect_trials(std::span<const Hold> holds, std::span<const std::int64_t> ids,
                      std::span<const std::int64_t> places);
 
+  std::unique_ptr<Resident> opened(const RveState& state) const;
+  void expect_not_interrupted() const {
+    if (interrupted_) throw Interrupted();
+  }
+
   Options options_;
+  std::atomic<bool> interrupted_{false};  ///< that every RVE watches
   Team team_;
   Slots slots_;
   Slots::Residents received_;

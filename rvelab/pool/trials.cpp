@@ -71,6 +71,8 @@ bool write_tangent(const Network& network, Tangent& tangent) {
   bool condensed = true;
   try {
     found = elastic_tangent(network);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error&) {
     found = affine_tangent(network);
     condensed = false;

@@ -150,7 +150,7 @@ struct Dissolve : KindOf<DissolveSettings> {
     if (error <= stage.stress_tolerance && at.unbalanced_ratio <= stage.unbalanced) {
       at.phase = dissolving;
     } else if (at.place >= stage.max_rounds) {
-      std::ostringstream text;
+      TextStream text;
       text << "step " << at.step << ": the held stress is missed by " << error << " of it (allowed "
            << stage.stress_tolerance << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed "
            << stage.unbalanced << ") after " << stage.max_rounds

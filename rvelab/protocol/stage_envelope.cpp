@@ -56,7 +56,7 @@ Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along
   test.run.progress.substeps += rest.substeps;
   worst.unbalanced_ratio = rest.unbalanced_ratio;
   if (rest.unbalanced_ratio > stage.unbalanced) {
-    std::ostringstream text;
+    TextStream text;
     text << "a probe's unbalanced ratio is " << rest.unbalanced_ratio << " after " << rest.substeps
          << " steps; wanted: " << stage.unbalanced << "; raise max_steps or unbalanced";
     throw test.failed(text.str());

@@ -95,7 +95,7 @@ struct Isotropic : KindOf<IsotropicStage> {
                         std::to_string(stage.pressure) + " Pa; give a pressure that this packing can carry");
     }
     if (reached == pack::Consolidated::not_still) {
-      std::ostringstream text;
+      TextStream text;
       text << "the normal stresses miss -" << stage.pressure << " Pa by " << pack::largest_gap(goal, at.stress) / scale
            << (stage.pressure == scale ? " of it" : " of " + in_words(scale) + " Pa") << " (allowed "
            << stage.stress_tolerance << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed "

@@ -33,7 +33,7 @@ struct Relax : KindOf<RelaxStage> {
     }
     const Report report = test.relax(stage.unbalanced, stage.max_steps);
     if (report.unbalanced_ratio > stage.unbalanced) {
-      std::ostringstream text;
+      TextStream text;
       text << "the unbalanced ratio is " << report.unbalanced_ratio << " after " << report.substeps
            << " steps; wanted: " << stage.unbalanced << "; raise max_steps or unbalanced";
       throw test.failed(text.str());

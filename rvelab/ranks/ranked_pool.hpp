@@ -33,6 +33,8 @@ class RankedPool final : public pool::Pool {
   void read(const std::function<pool::Population(const TakeState& take)>& reader) override;
   void expect_this_process() const override;
   void close() override;
+  void interrupt(bool on) noexcept override { own_.share().interrupt(on); }
+  const std::atomic<bool>& interrupted() const noexcept override { return own_.share().interrupted(); }
 
   /// RVEs that have changed their rank so far.
   std::size_t moved() const { return moved_; }

@@ -265,6 +265,8 @@ Network Rve::network() const {
   State copy = *state_;
   try {
     apply_deferred_strain(copy);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const Error&) {  // the grains are shown as they are
   }
   return answer(copy, network);

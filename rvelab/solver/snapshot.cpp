@@ -189,7 +189,7 @@ struct Reader {
 };
 
 std::string in_hexadecimal(std::uint64_t value) {
-  std::ostringstream text;
+  TextStream text;
   text << std::hex << value;
   return text.str();
 }

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "rvelab/threads/classic_locale.hpp"
+
 namespace rvelab {
 namespace {
 
@@ -245,6 +247,7 @@ bool Workers::enter(std::uint64_t& seen) {
 }
 
 void Workers::serve(std::size_t thread) {
+  const ClassicLocale locale;
   std::uint64_t seen = 0;
   double patient = until_sleep;
   while (!stop_) {

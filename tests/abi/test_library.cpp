@@ -27,7 +27,9 @@ TEST_CASE("librvelab.so exports the functions that its header declares, and one 
   CHECK(names == declared);
   const std::string files = output_of("nm -D --defined-only --format=posix " RVELAB_H5_LIBRARY);
   CHECK_THAT(files, Contains("rvelab_h5_file_calls T"));
-  CHECK(std::count(files.begin(), files.end(), '\n') == 2);  // it and the exit code
+  std::istringstream exported(files);
+  for (std::string name; exported >> name && name != "0"; std::getline(exported, name))  // operator new and delete
+    CHECK((name == "rvelab_h5_file_calls" || name.starts_with("_Znwm") || name.starts_with("_ZdlPv")));
 }
 
 TEST_CASE("librvelab.so needs no CGAL, MPI or HDF5, and has the name of version 1") {

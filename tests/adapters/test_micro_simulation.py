@@ -117,6 +117,32 @@ class MicroSimulationTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "RVELAB_SPECIMEN"):
             Empty(9)
 
+    def test_a_forked_worker_has_a_pool_of_its_own(self) -> None:
+        parent = simulation_class()(0)
+        parent.initialize()
+        parent.solve(data_of(windows[0]), 1.0)
+        state, told = parent.get_state(), os.pipe()
+        child = os.fork()
+        if child == 0:
+            said = []
+            try:
+                parent.solve(data_of(windows[1]), 1.0)
+            except RuntimeError as error:
+                said.append("before the process was forked" in str(error))
+            own = simulation_class()(7)
+            own.set_state(state)
+            said.append(matrix_of(own.solve(data_of(windows[1]), 1.0)).tobytes())
+            parent.set_state(state)
+            said.append(matrix_of(parent.solve(data_of(windows[1]), 1.0)).tobytes())
+            del own, parent
+            gc.collect()
+            os.write(told[1], pickle.dumps(said))
+            os._exit(0)
+        os.waitpid(child, 0)
+        said = pickle.loads(os.read(told[0], 65536))
+        expected = matrix_of(parent.solve(data_of(windows[1]), 1.0)).tobytes()
+        self.assertEqual(said, [True, expected, expected])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -178,6 +178,51 @@ class PoolTest(unittest.TestCase):
         self.assertIs(rvelab_library.gradients_of(dH, dH.shape), dH)
         self.assertIs(rvelab_library.numbers_of(ids, "ids"), ids)
 
+    def test_arrays_that_the_library_cannot_write_to_are_refused(self) -> None:
+        ids, dH = self.pool.spawn(self.template, 4), gradients(4, 1e-4)
+        good, read_only = self.pool.trial(ids, dH, want=rvelab.MEASURES), np.zeros((4, 3, 3))
+        read_only.flags.writeable = False
+        unaligned = np.frombuffer(bytearray(4 * 72 + 1), np.uint8)[1:].view(np.float64).reshape(4, 3, 3)
+        for name, array, text in [
+                ("sigma", np.zeros((4, 3, 3), np.float32), "float32"), ("sigma", np.zeros((4, 3, 3), ">f8"), ">f8"),
+                ("sigma", np.zeros((4, 6, 3))[:, ::2], "not contiguous"), ("sigma", np.zeros((4, 2, 2)), r"\(4, 2, 2\)"),
+                ("sigma", np.zeros((4, 3, 3), order="F"), "not contiguous"), ("sigma", read_only, "read-only"),
+                ("sigma", unaligned, "not aligned"), ("sigma", [0] * 36, "allowed"), ("sigma", None, "allowed"),
+                ("tangent", np.zeros((4, 3, 3)), r"\(4, 6, 6\)"), ("contact", np.zeros(4), r"\(4, 3, 3\)"),
+                ("reynolds", np.zeros((3, 3, 3)), "allowed"), ("error_estimate", np.zeros(2), r"\(4,\)"),
+                ("dt_scale", np.zeros(3), r"\(4,\)"), ("status", np.zeros(4, np.int64), "int32"),
+                ("tokens", np.zeros(4), "int64")]:
+            with self.subTest(name=name, text=text):
+                out = rvelab.Batch(4, rvelab.MEASURES)
+                setattr(out, name, array)
+                with self.assertRaisesRegex(ValueError, f"out.{name}.*{text}"):
+                    self.pool.trial(ids, dH, out=out)
+        out = rvelab.Batch(4, rvelab.MEASURES)
+        out.sigma = np.zeros((8, 3, 3))[2:6]  # a part of an array of one's own
+        self.assertEqual(self.pool.trial(ids, dH, out=out).sigma.tobytes(), good.sigma.tobytes())
+
+    def test_arguments_in_the_forms_that_python_has_for_them(self) -> None:
+        (rve,) = self.pool.spawn(self.template)
+        self.pool.apply(rve, gradients(1, 1e-3)[0])
+        bits, stress = self.pool.snapshot(rve), self.pool.info(rve).sigma
+        for given in (bits, bytearray(bits), memoryview(bits), np.frombuffer(bits, np.uint8)):
+            self.pool.apply(rve, gradients(1, 1e-3, 2)[0])
+            self.pool.restore(rve, given)
+            self.assertEqual(self.pool.snapshot(rve), bits)
+            self.assertEqual(self.pool.info(self.pool.spawn(self.pool.template(given))).sigma.tobytes(), stress.tobytes())
+        for wrong in ("text", None, 12):
+            with self.assertRaisesRegex(TypeError, "a snapshot is bytes"):
+                self.pool.restore(rve, wrong)
+        one, several = (self.pool.trial(rve, zero[None], want=want) for want in ("tangent", ["tangent"]))
+        self.assertEqual(one.tangent.tobytes(), several.tangent.tobytes())
+        self.assertIsNone(one.contact)
+        self.assertEqual(self.pool.info(float(rve)).token, self.pool.info(np.int64(rve)).token)
+        self.pool.close()
+        for call in (lambda: self.pool.trial(rve, zero[None]), lambda: self.pool.info(rve), self.pool.ids,
+                     lambda: self.pool.template(specimen)):
+            with self.assertRaisesRegex(rvelab.RvelabError, "this pool was closed"):
+                call()
+
     def test_one_that_fails_is_told_and_the_others_are_there(self) -> None:
         ids = self.pool.spawn(self.template, 3)
         dH = gradients(3, 1e-3)
@@ -209,7 +254,15 @@ class PoolTest(unittest.TestCase):
                            (lambda: self.pool.apply(rve + 0.5, zero), "single precision"),
                            (lambda: self.pool.trial(rve, zero[None], want=["stress"]), "allowed: contact, reynolds"),
                            (lambda: self.pool.trial(rve, zero[None], tokens=[1, 1]), "allowed: 1, one for each"),
-                           (lambda: self.pool.trial(rve, zero[None], out=rvelab.Batch(2)), "out is for 2 RVEs")]:
+                           (lambda: self.pool.trial(rve, zero[None], out=rvelab.Batch(2)), r"shape \(2, 3, 3\); allowed:.*\(1, 3, 3\)"),
+                           (lambda: self.pool.trial(rve, zero[None], want="tangent", out=rvelab.Batch(1)), "no array for tangent"),
+                           (lambda: self.pool.trial(np.int32([rve & 0x7fffffff]), zero[None]), "int32 are cut.*int64"),
+                           (lambda: self.pool.trial(np.float32([rve]), zero[None]), "float32 are cut.*int64"),
+                           (lambda: self.pool.trial(None, zero[None]), "ids is None"),
+                           (lambda: self.pool.release(["one"]), "whole numbers"),
+                           (lambda: self.pool.apply([], zero), "no ids are given"),
+                           (lambda: self.pool.apply(self.pool.spawn(self.template, 2), zero), "2 ids.*for one RVE"),
+                           (lambda: self.pool.info([rve, rve]), "2 ids.*for one RVE")]:
             with self.assertRaisesRegex(ValueError, text):
                 call()
         with self.assertRaisesRegex(TypeError, "no option 'worker'; allowed: workers"):
@@ -296,7 +349,7 @@ class RveTest(unittest.TestCase):
             kept.close()  # its pool has gone before it
         own = rvelab.Rve(specimen)
         own.close()
-        with self.assertRaisesRegex(rvelab.RvelabError, "pool is null"):
+        with self.assertRaisesRegex(rvelab.RvelabError, "was closed"):
             own.apply(zero)
 
     def test_the_interpreter_ends_with_pools_and_rves_alive(self) -> None:

@@ -34,9 +34,10 @@ class MicroSimulation:
     physical_time: ClassVar[bool] = os.environ.get("RVELAB_PHYSICAL_TIME") == "1"
     _pool: ClassVar[rvelab.Pool | None] = None
     _templates: ClassVar[dict[str, int]] = {}
+    _process: ClassVar[int] = 0  # that the pool belongs to
 
     def __init__(self, sim_id: int) -> None:
-        self._global_id, self._windows, self._id = sim_id, 0, 0
+        self._global_id, self._windows, self._id, self._made_in = sim_id, 0, 0, 0
         if self.specimen is None:
             raise ValueError("MicroSimulation has no specimen: let RVELAB_SPECIMEN name its file (rvelab pack)")
 
@@ -44,19 +45,23 @@ class MicroSimulation:
         """Makes the RVE, once. A simulation that adaptivity leaves inactive has none, until it is given a state."""
         if self._id:
             return
-        if MicroSimulation._pool is None:
+        if MicroSimulation._process != os.getpid():  # the first, or that of a forked child
             MicroSimulation._pool = rvelab.Pool(workers=1)  # the Micro Manager works by its ranks
+            MicroSimulation._templates, MicroSimulation._process = {}, os.getpid()
         path = os.path.abspath(self.specimen)
         if path not in self._templates:
             self._templates[path] = MicroSimulation._pool.template(path)
-        self._id = int(MicroSimulation._pool.spawn(self._templates[path])[0])
+        self._id, self._made_in = int(MicroSimulation._pool.spawn(self._templates[path])[0]), os.getpid()
 
     def _rve(self) -> int:
         self.initialize()
+        if self._made_in != os.getpid():
+            raise RuntimeError("this simulation was made before the process was forked, and its state is in the parent: "
+                               "make one here and give it the state, set_state(get_state() of the parent)")
         return self._id
 
     def __del__(self) -> None:
-        if getattr(self, "_id", 0) and not sys.is_finalizing():
+        if getattr(self, "_id", 0) and self._made_in == os.getpid() and not sys.is_finalizing():
             MicroSimulation._pool.release(self._id)
 
     def solve(self, macro_data: dict[str, np.ndarray], dt: float) -> dict[str, np.ndarray]:
@@ -75,6 +80,8 @@ class MicroSimulation:
 
     def set_state(self, state: bytes) -> None:
         """The state of any simulation."""
+        if self._made_in != os.getpid():
+            self._id = 0  # of the parent of this process
         rve = self._rve()
         MicroSimulation._pool.restore(rve, state)
 

@@ -254,7 +254,7 @@ void list_with(const Model& model, std::vector<Contact> contacts, const Interact
 void check_height(const Model& model, const Cell& cell) {
   const double shortest = shortest_vector(cell);
   if (shortest < model.min_height) {
-    std::ostringstream text;
+    TextStream text;
     text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
          << model.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
     throw IncrementFailed(text.str());

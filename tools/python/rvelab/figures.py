@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,10 +22,15 @@ _Source = Union[str, "os.PathLike[str]", Records, Rve]
 class Picture:
     """A figure that a script drew. A notebook shows it; save() keeps it.
 
-    path: of the file; without `output` it lives as long as this object. text: what the script printed."""
+    path: of the file; without `output` it lives as long as this object and its copies. text: what the script printed."""
 
-    def __init__(self, path: Path, text: str, kept: Any = None) -> None:
+    def __init__(self, path: Path, text: str, kept: Folder | None = None) -> None:
         self.path, self.text, self._kept = path, text, kept
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        if self._kept is not None:
+            self.path = Path(self._kept.name, self.path.name)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """A copy of the file, of the same format."""
@@ -55,6 +61,25 @@ def _scripts() -> Path:
     return found
 
 
+def _python() -> str:
+    """Path of a Python for the scripts: RVELAB_PYTHON, else this one. A program that Python is embedded in is none."""
+    python = os.environ.get("RVELAB_PYTHON") or sys.executable
+    if not os.environ.get("RVELAB_PYTHON") and not re.search("python|pypy", os.path.basename(python or "")):
+        raise RvelabError(f"figures are drawn by a Python of their own, and sys.executable is {python!r}, as where Python is "
+                          "embedded in another program: let RVELAB_PYTHON name a Python that has numpy, h5py and matplotlib "
+                          "(os.environ[\"RVELAB_PYTHON\"] = \"/usr/bin/python3\")")
+    return python
+
+
+def _written(path: Path) -> tuple[int, int, int] | None:
+    """Changes when the file is written again; None: there is none."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_ino, status.st_mtime_ns, status.st_size
+
+
 def _files(sources: _Source | Iterable[_Source], folder: str) -> list[str]:
     several = isinstance(sources, Iterable) and not isinstance(sources, (str, os.PathLike, Records))
     files = []
@@ -81,15 +106,23 @@ def plot(figure: str, sources: _Source | Iterable[_Source], *, output: str | os.
         raise ValueError(f"there is no figure {figure!r}; allowed: {', '.join(names)}")
     kept = Folder()
     path = Path(output) if output is not None else Path(kept.name) / f"{figure}.{'gif' if figure == 'film' else 'png'}"
-    words = [sys.executable, "-B", str(script), "-o", str(path)]
+    path = path.absolute()
+    words = [_python(), "-B", str(script), "-o", str(path)]
     for name, value in options.items():
         flag = "--" + name.replace("_", "-")
         words += ([flag] if value else []) if isinstance(value, bool) else [f"{flag}={value}"]
-    done = subprocess.run([*words, "--", *_files(sources, kept.name)], capture_output=True, text=True,
-                          env={**os.environ, "RVELAB_PROGRAM": program(), "MPLBACKEND": "Agg"})
+    before = _written(path)
+    try:
+        done = subprocess.run([*words, "--", *_files(sources, kept.name)], capture_output=True, text=True,
+                              env={**os.environ, "RVELAB_PROGRAM": program(), "MPLBACKEND": "Agg"})
+    except OSError as error:
+        raise RvelabError(f"{words[0]} cannot be run ({error.strerror}): let RVELAB_PYTHON name a Python") from None
     if done.returncode != 0:
         raise RvelabError(done.stderr.strip() or f"{script} ended with the exit code {done.returncode}")
-    return Picture(path, done.stdout.strip(), kept)
+    if _written(path) in (None, before):
+        raise RvelabError(f"{words[0]} has not written {path}: let RVELAB_PYTHON name a Python that has numpy, h5py and "
+                          "matplotlib" + (f"; it said {done.stdout.strip()[:200]!r}" if done.stdout.strip() else ""))
+    return Picture(path, done.stdout.strip(), kept if output is None else None)
 
 
 def report(sources: _Source | Iterable[_Source], output: str | os.PathLike[str], *, title: str | None = None,

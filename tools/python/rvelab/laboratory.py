@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from copy import copy
 from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, NamedTuple, Sequence, Union
 
@@ -19,9 +20,19 @@ class Records(dict):
     names, units and signs of record files (stress in tension positive).
 
     summary: what else the program printed (peak_friction_angle_deg, flagged, stiffness_Pa, ...).
-    file: path of the record file. Without `output` it lives as long as these records."""
+    file: path of the record file. Without `output` it lives as long as these records and their copies; what pickle
+    carries to another process takes it along."""
     summary: dict[str, Any]
     file: Path
+    _kept: Folder | None = None  # that of the file, without `output`
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        if self._kept is not None:
+            self.file = Path(self._kept.name, self.file.name)
+
+    def copy(self) -> "Records":
+        return copy(self)
 
     def __repr__(self) -> str:
         n = len(self.get("strain", ()))
@@ -73,14 +84,17 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
     words += ["--force"] * overwrite + ["--resume"] * resume
-    printed = ask(words, None if progress is None else lambda told: progress(PathPoint(**told)))
-    records = Records()
-    for name, rows in printed.pop("records").items():
-        column = np.array(rows)  # a number that is not finite is null in JSON
-        records[name] = column.astype(np.float64) if column.dtype == object else column
-    records.summary, records.file = printed, Path(file)
-    if output is None:
-        records._kept = kept
+
+    def made_of(printed: dict[str, Any]) -> Records:
+        records = Records()
+        for name, rows in printed.pop("records").items():
+            column = np.array(rows)  # a number that is not finite is null in JSON
+            records[name] = column.astype(np.float64) if column.dtype == object else column
+        records.summary, records.file = printed, Path(file).absolute()
+        records._kept = kept if output is None else None
+        return records
+
+    records = ask(words, None if progress is None else lambda told: progress(PathPoint(**told)), made_of)
     if progress is not None:
         progress(PathPoint(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
                         float(records["strain"][-1])))

@@ -38,7 +38,9 @@ class OutOfMemory(RvelabError, MemoryError):
 
 class RvelabWarning(UserWarning):
     """The result is usable. Its text is the same each time, so that Python tells it once for a line; detail is the
-    library's text with its figures, status the number in rvelab.h."""
+    library's text with its figures, status the number in rvelab.h. Where a filter of warnings makes it an error, the call
+    has been made all the same: result is what it gave."""
+    result: Any = None
 
     def __init__(self, text: str, status: int | None = None, detail: str = "") -> None:
         super().__init__(text)
@@ -110,17 +112,40 @@ class Array(ctypes.Structure):
 class Batch:
     """What a trial of n RVEs gave: sigma (n, 3, 3), status (n), dt_scale (n), tokens (n), and where asked for contact
     and reynolds (n, 3, 3), tangent (n, 6, 6; xx yy zz yz xz xy, engineering shear) and error_estimate (n), all in Pa.
-    Rows of an RVE that failed are NaN, its token is 0."""
+    Rows of an RVE that failed are NaN, its token is 0. want: a name among MEASURES, or several."""
 
-    def __init__(self, n: int, want: Iterable[str] = ()) -> None:
-        shapes = {"sigma": (n, 3, 3), "contact": (n, 3, 3), "reynolds": (n, 3, 3), "tangent": (n, 6, 6)}
-        unknown = set(want) - set(MEASURES)
-        if unknown:
-            raise ValueError(f"want names {sorted(unknown)}; allowed: {', '.join(MEASURES)}")
-        for name in ("sigma", *MEASURES):
-            asked = name == "sigma" or name in want
-            setattr(self, name, np.empty(shapes.get(name, (n,))) if asked else None)
-        self.dt_scale, self.status, self.tokens = np.empty(n), np.empty(n, np.int32), np.empty(n, np.int64)
+    def __init__(self, n: int, want: str | Iterable[str] = ()) -> None:
+        wanted = {want} if isinstance(want, str) else set(want)
+        if wanted - set(MEASURES):
+            raise ValueError(f"want names {sorted(wanted - set(MEASURES))}; allowed: {', '.join(MEASURES)}")
+        for name, (shape, kind) in self._arrays(n).items():
+            setattr(self, name, None if name in MEASURES and name not in wanted else np.empty(shape, kind))
+
+    @staticmethod
+    def _arrays(n: int) -> dict[str, tuple[tuple[int, ...], type]]:
+        wide = {"sigma": (n, 3, 3), "contact": (n, 3, 3), "reynolds": (n, 3, 3), "tangent": (n, 6, 6)}
+        kinds = {"status": np.int32, "tokens": np.int64}
+        return {name: (wide.get(name, (n,)), kinds.get(name, np.float64))
+                for name in ("sigma", *MEASURES, "dt_scale", "status", "tokens")}
+
+    def expect_fits(self, n: int, want: str | Iterable[str]) -> None:
+        """ValueError unless the library can write a trial of n RVEs into these arrays."""
+        for name, (shape, kind) in self._arrays(n).items():
+            array = getattr(self, name, None)
+            if array is None and name in MEASURES:
+                if name == want or name in want:
+                    raise ValueError(f"out has no array for {name}, which want names: out=Batch({n}, want)")
+                continue
+            flags = array.flags if isinstance(array, np.ndarray) else None
+            if flags is None or array.shape != shape or array.dtype != kind or not (
+                    flags.c_contiguous and flags.aligned and flags.writeable):
+                found = f"of {array.dtype} and shape {array.shape}" if flags is not None else repr(array)[:80]
+                order = "" if flags is None else ", ".join(
+                    text for text, holds in (("not contiguous (order C)", not flags.c_contiguous),
+                                             ("not aligned", not flags.aligned), ("read-only", not flags.writeable))
+                    if holds)
+                raise ValueError(f"out.{name} is {found}{', ' + order if order else ''}; allowed: a writeable array of "
+                                 f"{np.dtype(kind)} and shape {shape}, contiguous in order C, as Batch({n}, want) makes it")
 
 
 def load() -> ctypes.CDLL:
@@ -157,22 +182,44 @@ def _level_of_caller() -> int:
     return level
 
 
-def call(name: str, *arguments: Any, batch: Batch | None = None) -> None:
-    """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text."""
+def call(name: str, *arguments: Any, batch: Batch | Mixed | None = None, result: np.ndarray | None = None) -> None:
+    """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text. batch,
+    result: what it writes to, for error.batch and warning.result."""
     status = getattr(library, "rvelab_" + name)(*arguments)
-    if status == 0:
-        return
-    text, name = library.rvelab_last_error().decode(), library.rvelab_status_name(status).decode()
-    if status > 0:
-        message = RvelabWarning(f"{name}: {_warnings.get(status, text)}", status, text)
-        warnings.warn(message, stacklevel=_level_of_caller())
-        return
-    raise {-1: Discard, -5: StaleToken, -10: OutOfMemory}.get(status, RvelabError)(f"{name}: {text}", status, batch)
+    if status != 0:
+        tell(status, name, arguments[0], result if batch is None else batch, batch)
 
 
-def numbers_of(given: ArrayLike, what: str) -> np.ndarray:
+def tell(status: int, name: str, pool: Any, result: Any, batch: Any) -> None:
+    """The status of a call as a warning or an error."""
+    if isinstance(pool, c_void_p) and not pool:
+        raise RvelabError("this pool was closed, or the Rve that it is of; make another, or close it later", status)
+    text, kind = library.rvelab_last_error().decode(), library.rvelab_status_name(status).decode()
+    if status < 0:
+        raise {-1: Discard, -5: StaleToken, -10: OutOfMemory}.get(status, RvelabError)(f"{kind}: {text}", status, batch)
+    warn(RvelabWarning(f"{kind}: {_warnings.get(status, text)}", status, text), _level_of_caller(), result,
+         "its trials are pending" if name == "trial" else "the state is that after the call")
+
+
+def warn(message: RvelabWarning, level: int, result: Any, done: str) -> None:
+    """A warning that a filter makes an error says what was done, and holds what the call gave."""
+    try:
+        warnings.warn(message, stacklevel=level + 1)
+    except RvelabWarning as raised:
+        raised.args = (f"{raised}. A filter makes this warning an error: {done}, and .result is what the call gave",)
+        raised.result = result
+        raise
+
+
+def numbers_of(given: ArrayLike, what: str = "ids") -> np.ndarray:
     """Integers as int64, without a copy where they are; floats only where they are whole."""
+    if given is None:
+        raise ValueError(f"{what} is None; give the {what} that the pool returned")
     array = np.atleast_1d(np.asarray(given))
+    if array.dtype.kind not in "iuf" and array.size > 0:
+        raise ValueError(f"{what} are of {array.dtype}; allowed: whole numbers in one row, as the pool returned them")
+    if what == "ids" and array.dtype.itemsize < 8:
+        raise ValueError(f"ids of {array.dtype} are cut: an id has up to 53 bits; keep them as int64, or as float64")
     whole = np.ascontiguousarray(array, np.int64)
     if whole.ndim != 1 or not np.array_equal(whole, array):
         raise ValueError(f"{what} of shape {array.shape}: allowed are whole numbers in one row; were they passed "
@@ -181,7 +228,22 @@ def numbers_of(given: ArrayLike, what: str) -> np.ndarray:
 
 
 def id_of(given: Any) -> int:
-    return int(given) if isinstance(given, (int, np.integer)) else int(numbers_of(given, "id")[0])
+    """That of a call for one RVE."""
+    if type(given) is int or type(given) is np.int64:
+        return int(given)
+    ids = numbers_of(given)
+    if len(ids) != 1:
+        raise ValueError(f"{len(ids) or 'no'} ids are given, and this call is for one RVE: give one id (trial, batch, "
+                         "run_stages, cost and release take several)")
+    return int(ids[0])
+
+
+def bytes_of(snapshot: Any) -> bytes:
+    """A snapshot as bytes: those, a bytearray, a memoryview, an array of numpy."""
+    try:
+        return snapshot if isinstance(snapshot, bytes) else memoryview(snapshot).tobytes()
+    except TypeError:
+        raise TypeError(f"a snapshot is bytes, as snapshot() returns them, not {type(snapshot).__name__}") from None
 
 
 def gradients_of(given: ArrayLike, shape: tuple[int, ...], what: str = "dH") -> np.ndarray:

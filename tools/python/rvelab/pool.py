@@ -5,14 +5,15 @@ import json
 import os
 import sys
 import tomllib
-from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
+from ctypes import byref, c_char_p, c_double, c_int32, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
 from typing import Any, Iterable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError, call,
-                      gradients_of, id_of, library, numbers_of)
+from .interrupt import long_call
+from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError,
+                      RvelabWarning, bytes_of, call, gradients_of, id_of, library, numbers_of)
 from .program import flat, plain
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
@@ -30,7 +31,7 @@ for _name, _arguments in {
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
         "run_stages": (_pool, _number, _ids, c_char_p, c_void_p, c_void_p),
-        "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
     getattr(library, "rvelab_" + _name).argtypes = _arguments
@@ -104,10 +105,11 @@ class Pool:
     def template(self, source: str | os.PathLike[str] | bytes) -> int:
         """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
         made = c_int64()
-        if isinstance(source, bytes):
-            call("template_from_snapshot", self._pool, source, len(source), byref(made))
-        else:
+        if isinstance(source, (str, os.PathLike)):
             call("template_load", self._pool, os.fsencode(source), byref(made))
+        else:
+            snapshot = bytes_of(source)
+            call("template_from_snapshot", self._pool, snapshot, len(snapshot), byref(made))
         return made.value
 
     def release_template(self, template: int) -> None:
@@ -117,7 +119,7 @@ class Pool:
     def spawn(self, template: int, n: int = 1) -> np.ndarray:
         """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
         ids = np.zeros(max(n, 0), np.int64)
-        call("spawn", self._pool, template, n, ids.ctypes.data)
+        long_call("spawn", self._pool, template, n, ids.ctypes.data)
         return ids
 
     def clone(self, rve: int) -> int:
@@ -128,7 +130,7 @@ class Pool:
 
     def release(self, rves: ArrayLike) -> None:
         """Ends RVEs: all of those named, or none."""
-        ids = numbers_of(rves, "ids")
+        ids = numbers_of(rves)
         call("release", self._pool, len(ids), ids.ctypes.data)
 
     def ids(self) -> np.ndarray:
@@ -142,19 +144,20 @@ class Pool:
     def apply(self, rve: int, dH: ArrayLike, dt: float = 0) -> np.ndarray:
         """Trial and commit in one: sigma (3, 3) after dH (3, 3) over dt."""
         gradient, sigma = gradients_of(dH, (3, 3)), np.empty((3, 3))
-        call("apply", self._pool, id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data)
+        long_call("apply", self._pool, id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data, result=sigma)
         return sigma
 
     def trial(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, tokens: ArrayLike | None = None,
-              want: Iterable[str] = (), out: Batch | None = None) -> Batch:
+              want: str | Iterable[str] = (), out: Batch | None = None) -> Batch:
         """One trial of each of n RVEs, dH (n, 3, 3), from its committed state or from the one that its token names.
-        commit() makes trials the states. want: names among MEASURES. out: a Batch of n whose arrays are used again.
-        Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
-        ids, batch = numbers_of(rves, "ids"), BatchStruct()
+        commit() makes trials the states. want: a name among MEASURES, or several. out: a Batch of n whose arrays are used
+        again. Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
+        ids, batch = numbers_of(rves), BatchStruct()
         gradients = gradients_of(dH, (len(ids), 3, 3))
-        found = Batch(len(ids), tuple(want)) if out is None else out
-        if len(found.sigma) != len(ids):
-            raise ValueError(f"out is for {len(found.sigma)} RVEs, the call is of {len(ids)}")
+        want = want if isinstance(want, str) else tuple(want)
+        found = Batch(len(ids), want) if out is None else out
+        if out is not None:
+            Batch.expect_fits(out, len(ids), want)
         named = None if tokens is None else numbers_of(tokens, "tokens")
         if named is not None and len(named) != len(ids):
             raise ValueError(f"tokens has the length {len(named)}; allowed: {len(ids)}, one for each RVE")
@@ -169,16 +172,20 @@ class Pool:
         found.tokens.fill(0)
         batch.dt_scale, batch.status = found.dt_scale.ctypes.data, found.status.ctypes.data
         batch.tokens_out = found.tokens.ctypes.data
-        call("trial", self._pool, byref(batch), batch=found)
+        long_call("trial", self._pool, byref(batch), batch=found)
         return found
 
-    def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: Iterable[str] = ()) -> Batch:
+    def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: str | Iterable[str] = ()) -> Batch:
         """Trial and commit of n RVEs. Those that could be made are committed, whether others failed or not."""
         try:
             found = self.trial(rves, dH, dt, want=want)
         except RvelabError as error:
             if error.batch is not None:
-                self.commit(numbers_of(rves, "ids")[error.batch.tokens != 0])
+                self.commit(numbers_of(rves)[error.batch.tokens != 0])
+            raise
+        except RvelabWarning as warning:
+            self.commit(rves)
+            warning.args = (str(warning).replace("its trials are pending", "its trials are committed"),)
             raise
         self.commit(rves)
         return found
@@ -189,7 +196,7 @@ class Pool:
         """Trial and commit of n RVEs to rows A : d eps + B : d sigma = c, 3 in 2D, 6 in 3D: strain A and stress B
         (n, rows, 3, 3), value c, scale and missed (n, rows), spin (n, 3, 3); see rvelab_mixed in rvelab.h. Raises if one
         fails; error.batch then holds what the others gave."""
-        ids, mixed = numbers_of(rves, "ids"), MixedStruct()
+        ids, mixed = numbers_of(rves), MixedStruct()
         n, rows = len(ids), np.shape(value)[-1]
         given = {name: gradients_of(array, shape, name) for name, array, shape in (
             ("strain", strain, (n, rows, 3, 3)), ("stress", stress, (n, rows, 3, 3)), ("value", value, (n, rows)),
@@ -202,13 +209,13 @@ class Pool:
         for name in ("sigma", "dH", "held_error", "error_estimate", "status"):
             setattr(mixed, name, getattr(found, name).ctypes.data)
         mixed.tokens_out = found.tokens.ctypes.data
-        call("apply_mixed", self._pool, byref(mixed), batch=found)
+        long_call("apply_mixed", self._pool, byref(mixed), batch=found)
         return found
 
     def relax(self, rve: int, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
         """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small; warns if it is not."""
         sigma = np.empty((3, 3))
-        call("relax", self._pool, id_of(rve), unbalanced, max_substeps, sigma.ctypes.data)
+        long_call("relax", self._pool, id_of(rve), unbalanced, max_substeps, sigma.ctypes.data, result=sigma)
         return sigma
 
     def commit(self, rves: ArrayLike | None = None) -> None:
@@ -220,8 +227,8 @@ class Pool:
         self._settle("revert", rves)
 
     def _settle(self, name: str, rves: ArrayLike | None) -> None:
-        ids = None if rves is None else numbers_of(rves, "ids")
-        call(name, self._pool, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
+        ids = None if rves is None else numbers_of(rves)
+        long_call(name, self._pool, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
 
     def info(self, rve: int) -> Info:
         """Measures of the committed state as attributes: void_ratio, p, q, fabric (3, 3), token ... (see Info)."""
@@ -270,14 +277,15 @@ class Pool:
         list of such, or a text of TOML. Their ends are the new states, whose stresses are returned, (n, 3, 3) Pa; a
         pending trial is reverted. If one of them fails, RvelabError says why: that one is as before, the others went
         on."""
-        ids = numbers_of(rves, "ids")
+        ids = numbers_of(rves)
         sigma = np.full((len(ids), 3, 3), np.nan)
-        call("run_stages", self._pool, len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None)
+        long_call("run_stages", self._pool, len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None,
+                        result=sigma)
         return sigma
 
     def cost(self, rves: ArrayLike) -> np.ndarray:
         """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""
-        ids = numbers_of(rves, "ids")
+        ids = numbers_of(rves)
         made = np.zeros(len(ids), np.int64)
         call("cost", self._pool, len(ids), ids.ctypes.data, made.ctypes.data)
         return made
@@ -292,13 +300,14 @@ class Pool:
 
     def restore(self, rve: int, snapshot: bytes) -> None:
         """The RVE takes the state of a snapshot, of any specimen; a pending trial is discarded."""
-        call("snapshot_load", self._pool, id_of(rve), snapshot, len(snapshot))
+        held = bytes_of(snapshot)
+        call("snapshot_load", self._pool, id_of(rve), held, len(held))
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """All RVEs with ids and tokens into a pool file (HDF5)."""
-        call("pool_write", self._pool, os.fsencode(path))
+        long_call("pool_write", self._pool, os.fsencode(path))
 
     def read(self, path: str | os.PathLike[str]) -> np.ndarray:
         """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
-        call("pool_read", self._pool, os.fsencode(path))
+        long_call("pool_read", self._pool, os.fsencode(path))
         return self.ids()

@@ -8,12 +8,11 @@ import subprocess
 import sys
 import tempfile
 import threading
-import warnings
 import weakref
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
 
-from .library import RvelabError, RvelabWarning, library
+from .library import RvelabError, RvelabWarning, library, warn
 
 
 def program() -> str:
@@ -37,6 +36,23 @@ class Folder:
     def __init__(self) -> None:
         self.name = tempfile.mkdtemp(prefix="rvelab-")
         weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
+
+    def __copy__(self) -> "Folder":
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Folder":
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:  # to another process, with its files
+        return _folder_of, ({file.name: file.read_bytes() for file in Path(self.name).iterdir() if file.is_file()},)
+
+
+def _folder_of(files: dict[str, bytes]) -> Folder:
+    made = Folder()
+    for name, content in files.items():
+        Path(made.name, name).write_bytes(content)
+    return made
+
 
 
 def main() -> None:
@@ -72,9 +88,10 @@ def plain(value: Any) -> Any:
     raise TypeError(f"a setting is {value!r}; allowed: numbers, texts, truth values and lists of them")
 
 
-def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, Any]], None] | None = None) -> Any:
-    """Runs the program with --json and returns what it printed. Its warnings become RvelabWarning, its error
-    RvelabError. progress: called with each of its lines of progress."""
+def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, Any]], None] | None = None,
+        made_of: Callable[[Any], Any] = lambda printed: printed) -> Any:
+    """Runs the program with --json and returns what it printed, as made_of makes it. Its warnings become RvelabWarning,
+    its error RvelabError. progress: called with each of its lines of progress."""
     command = [program(), *map(os.fspath, words), "--json", *(["--progress"] if progress is not None else [])]
     printed, told = [], []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
@@ -93,6 +110,7 @@ def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, A
             reader.join()
     if running.returncode != 0:
         raise RvelabError("".join(told).strip() or f"{command[0]} ended with the exit code {running.returncode}")
+    made = made_of(json.loads(printed[0]))
     for line in told:
-        warnings.warn(line.rstrip("\n"), RvelabWarning, stacklevel=3)
-    return json.loads(printed[0])
+        warn(RvelabWarning(line.rstrip("\n")), 3, made, "the command has ended, its files are written")
+    return made

@@ -9,7 +9,7 @@ from typing import Any, Iterable, Mapping, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .library import Array, Batch, Info, Mixed, RvelabError
+from .library import Array, Batch, Info, Mixed, RvelabError, RvelabWarning
 from .pool import Pool
 
 _FIELDS = tuple(name for name, _ in Info._fields_ if name not in ("struct_size", "flags"))
@@ -87,7 +87,11 @@ class Rve:
                 c[0, k] = held[name] - 0.5 * (stress[i, j] + stress[j, i])
                 scale[0, k] = max(abs(held[name]), 0.01 * abs(self.p))
         missed = np.where(scale > 0, c, 0) if self._held == held else None
-        found = self.pool.apply_mixed(self.id, A, B, c, scale, dt, missed, 0.5 * (dH - dH.T)[np.newaxis], tolerance)
+        try:
+            found = self.pool.apply_mixed(self.id, A, B, c, scale, dt, missed, 0.5 * (dH - dH.T)[np.newaxis], tolerance)
+        except RvelabWarning:  # made an error by a filter
+            self._held = dict(held)
+            raise
         self._held = dict(held)
         return found
 
@@ -96,7 +100,7 @@ class Rve:
         self._held = None
         return self.pool.relax(self.id, unbalanced, max_substeps)
 
-    def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: Iterable[str] = ()) -> Batch:
+    def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: str | Iterable[str] = ()) -> Batch:
         """A Batch of one: what dH would give. It pends until commit(), revert() or the next call."""
         return self.pool.trial(self.id, np.asarray(dH, np.float64)[np.newaxis], dt, token, want)
 
@@ -112,9 +116,14 @@ class Rve:
     def tangent(self) -> np.ndarray:
         """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. Made by a trial
         of dH = 0, which replaces a pending one and is discarded."""
-        found = self.trial(np.zeros((3, 3)), want=("tangent",)).tangent[0]
+        try:
+            found = self.trial(np.zeros((3, 3)), want="tangent")
+        except RvelabWarning as warning:  # made an error by a filter
+            self.revert()
+            warning.args = (str(warning).replace("its trials are pending", "the state is as before"),)
+            raise
         self.revert()
-        return found
+        return found.tangent[0]
 
     def snapshot(self) -> bytes:
         """The committed state with its tokens, bitwise, for the same build of rvelab; Rve(bytes) has it again."""
