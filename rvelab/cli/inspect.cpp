@@ -1,4 +1,5 @@
 // rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in command.hpp.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -62,11 +63,15 @@ void add_state(Listing& listing, const Rve& rve) {
   if (network.has_bodies() && !network.has_solids()) listing.add("members", network.members.size());
   listing.add("contacts", network.contacts.size());
   if (network.has_solids()) add_forms(listing, network);
-  each_interaction_law([&](auto, auto law) {
+  const Interactions all = rve.interactions();
+  each_interaction_law([&](auto kind, auto law) {
     using Law = decltype(law);
-    const Interactions all = rve.interactions();
-    const std::size_t count = static_cast<const ListOf<Law>&>(all).items.size();
-    if (count > 0) listing.add(Law::name, count);
+    const std::size_t kept = static_cast<const ListOf<Law>&>(all).items.size();
+    if (kept == 0) return;
+    const auto acting = std::count_if(network.interactions.begin(), network.interactions.end(),
+                                      [&](const InteractionState& each) { return each.kind == kind; });
+    listing.add(Law::name, acting);
+    if constexpr (Law::family == Family::bonds) listing.add(Law::name + std::string("_broken"), kept - acting);
   });
   listing.add("stress_Pa", row_major(stress), "Pa");
   listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");

@@ -146,7 +146,7 @@ Grains graded_grains(const Recipe& recipe) {
   Grains grains;
   for (std::size_t f = 0; f < curves.size(); ++f) {
     if (numbers[f] == 0) {
-      throw InputError("grains." + recipe.fractions[f].name + " gets no grain of " + std::to_string(recipe.number) +
+      throw InputError(recipe.fractions[f].table() + " gets no grain of " + std::to_string(recipe.number) +
                        "; allowed: at least one for each fraction; raise pack.number or the fraction's share");
     }
     for (const double radius : radii_of(curves[f], numbers[f], uniform)) {
