@@ -381,9 +381,10 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   }
 }
 
-/// Whether its grains can carry its largest pressure, and are likely to be meant for it.
+/// Whether its grains are many enough, can carry its largest pressure, and are likely to be meant for it.
 void read_together(const RecipeFile& file, std::vector<KeyError>& errors) {
   const Recipe& recipe = file.recipe;
+  for (const std::string& line : too_few_grains(recipe)) errors.push_back({0, line, false, true});
   if (!recipe.stress) return;
   const int d = dimension_of(recipe.shape);
   double pressure = mean_pressure(*recipe.stress, d);
