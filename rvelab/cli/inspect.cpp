@@ -1,8 +1,11 @@
 // rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in command.hpp.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
@@ -52,6 +55,27 @@ void add_forms(Listing& listing, const Network& network) {
   listing.add("convexity", 1.0);
 }
 
+/// Diameters that 10, 50 and 90 % of the mass do not exceed; the largest grain beside the mass and the cell.
+void add_sizes(Listing& listing, const Network& network) {
+  std::vector<std::pair<double, double>> grains;  // radius, mass
+  double mass = 0;
+  for (const GrainState& grain : network.grains) {
+    grains.emplace_back(grain.radius, grain.mass);
+    mass += grain.mass;
+  }
+  if (!(mass > 0)) return;
+  std::sort(grains.begin(), grains.end());
+  double passed = 0;
+  std::size_t k = 0;
+  for (const auto& [name, part] : {std::pair("d10_m", 0.1), {"d50_m", 0.5}, {"d90_m", 0.9}}) {
+    while (k + 1 < grains.size() && passed + grains[k].second < part * mass) passed += grains[k++].second;
+    listing.add(name, 2 * grains[k].first, "m");
+  }
+  const double largest = 2 * grains.back().first, edge = heights(network.cell).head(network.dimension()).minCoeff();
+  listing.add("largest_grain_mass_share", grains.back().second / mass);
+  listing.add("cell_over_largest_diameter", edge / largest);
+}
+
 void add_state(Listing& listing, const Rve& rve) {
   const records::MeasuredState state(rve);
   const Network& network = state.network;
@@ -61,12 +85,17 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("grains", network.grains.size());
   if (network.has_bodies() && !network.has_solids()) listing.add("members", network.members.size());
   listing.add("contacts", network.contacts.size());
+  add_sizes(listing, network);
   if (network.has_solids()) add_forms(listing, network);
-  each_interaction_law([&](auto, auto law) {
+  const Interactions all = rve.interactions();
+  each_interaction_law([&](auto kind, auto law) {
     using Law = decltype(law);
-    const Interactions all = rve.interactions();
-    const std::size_t count = static_cast<const ListOf<Law>&>(all).items.size();
-    if (count > 0) listing.add(Law::name, count);
+    const std::size_t kept = static_cast<const ListOf<Law>&>(all).items.size();
+    if (kept == 0) return;
+    const auto acting = std::count_if(network.interactions.begin(), network.interactions.end(),
+                                      [&](const InteractionState& each) { return each.kind == kind; });
+    listing.add(Law::name, acting);
+    if constexpr (Law::family == Family::bonds) listing.add(Law::name + std::string("_broken"), kept - acting);
   });
   listing.add("stress_Pa", row_major(stress), "Pa");
   listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");

@@ -1,6 +1,10 @@
 #include "rvelab/cli/interrupt.hpp"
 
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
+#include <utility>
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
@@ -33,8 +37,32 @@ const std::atomic<bool>& stop_on_signals() {
   return stop;
 }
 
-void end_stopped(const std::string& done) {
+namespace {
+
+void tell_stopped(const std::string& done) {
   tell(std::string("stopped by ") + (received == SIGINT ? "Ctrl-C" : "SIGTERM") + done);
+}
+
+}  // namespace
+
+EndInASecond::EndInASecond(std::function<std::string()> done)
+    : thread_([this, done = std::move(done)] {
+        using namespace std::chrono_literals;
+        constexpr auto pause = 50ms, patience = 1000ms;
+        for (auto waited = 0ms; waited < patience && !over_; waited += stop ? pause : 0ms)
+          std::this_thread::sleep_for(pause);
+        if (over_) return;
+        tell_stopped(done());
+        ::_exit(128 + received);
+      }) {}
+
+EndInASecond::~EndInASecond() {
+  over_ = true;
+  thread_.join();
+}
+
+void end_stopped(const std::string& done) {
+  tell_stopped(done);
   throw Exit(128 + received);
 }
 

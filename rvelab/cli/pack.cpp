@@ -1,5 +1,6 @@
 // rvelab pack: specimens from a recipe. Declared in command.hpp.
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -91,20 +92,23 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
 }
 
 /// Makes one specimen and writes it; only one file is written at a time.
-void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files) {
+void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files, std::atomic<std::size_t>& written) {
   const auto begin = std::chrono::steady_clock::now();
   pack::PackWatch watch;
   watch.stop = &stop_on_signals();
-  watch.on_draw = [&](long draw, double void_ratio) {
-    line.write("seed " + std::to_string(job.what.recipe.seed) + "  packing " + std::to_string(draw) + "  void ratio " +
-               in_words(void_ratio));
+  const auto words = [&](long draw) {
+    return "seed " + std::to_string(job.what.recipe.seed) + "  packing " + std::to_string(draw) + "  ";
   };
+  watch.on_draw = [&](long draw, double void_ratio) { line.write(words(draw) + "void ratio " + in_words(void_ratio)); };
+  if (line.on_terminal())
+    watch.on_phase = [&](long draw, const std::string& phase) { line.write_at_times(words(draw) + phase); };
   const pack::Packing packing = pack::pack(job.what.recipe, workers, watch);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   job.made = summary_of(job, packing, seconds.count());
   const io::SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
   const std::lock_guard lock(files);
   io::write_specimen(packing.specimen, job.file, &origin);
+  ++written;
 }
 
 /// One line a specimen; the rest stands in --json.
@@ -140,9 +144,16 @@ void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool jso
   if (jobs.size() > 1 && !json) std::cout << table_of(jobs) << std::flush;
 }
 
-std::string made_of(const std::vector<Job>& jobs) {
-  const auto made = std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return !job.made.is_null(); });
-  return std::to_string(made) + " of " + std::to_string(jobs.size()) + " specimens are made, and their files kept";
+/// Before the work, what takes long; the time is that of one core, since one draw is made on one.
+void tell_of_cost(const pack::Recipe& recipe) {
+  constexpr double long_time = 600;  // s
+  const double seconds = pack::expected_seconds(recipe);
+  if (!(seconds > long_time)) return;
+  const bool searched = recipe.stress && recipe.void_ratio;
+  tell(std::string(searched ? "each trial packing" : "this packing") + " takes some " + duration_in_words(seconds) +
+       ", by packings of the same shape that were measured; Ctrl-C or SIGTERM stops it" +
+       (moves_as_body(recipe.shape) ? "; superellipsoids of smaller exponents or of more equal half axes take less"
+                                    : "; fewer grains take less"));
 }
 
 void run_pack(const PackArguments& arguments) {
@@ -152,20 +163,30 @@ void run_pack(const PackArguments& arguments) {
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});
+  tell_of_cost(file.recipe);
   const unsigned threads =
       arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
   TerminalLine line;
   std::mutex files;
+  std::atomic<std::size_t> written{0};
+  const auto made = [&] {
+    return std::to_string(written) + " of " + std::to_string(jobs.size()) + " specimens are made, and their files kept";
+  };
   try {
+    const EndInASecond end([&] {
+      files.lock();  // for good
+      line.write("");
+      return "; " + made();
+    });
     if (jobs.size() == 1) {
       Workers workers(threads);
-      make(jobs.front(), workers, line, files);
+      make(jobs.front(), workers, line, files, written);
     } else {
       Workers workers(unsigned(std::min<std::size_t>(threads, jobs.size())));
       workers.for_each_in_turn(jobs.size(), [&](std::size_t k) {
         Workers alone(1);
         try {
-          make(jobs[k], alone, line, files);
+          make(jobs[k], alone, line, files, written);
         } catch (const InputError&) {
           throw;
         } catch (const Interrupted&) {
@@ -176,12 +197,12 @@ void run_pack(const PackArguments& arguments) {
       });
     }
   } catch (const Interrupted&) {
-    end_stopped("; " + made_of(jobs));
+    end_stopped("; " + made());
   } catch (const InputError&) {
     throw;
   } catch (const Error& error) {
     if (jobs.size() == 1) throw;
-    throw Error(std::string(error.what()) + "; " + made_of(jobs));
+    throw Error(std::string(error.what()) + "; " + made());
   }
   report(file, jobs, arguments.json);
 }

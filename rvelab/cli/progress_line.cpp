@@ -14,19 +14,6 @@
 namespace rvelab::cli {
 namespace {
 
-std::string duration_in_words(double seconds) {
-  const auto whole = long(std::ceil(seconds));
-  char text[64];
-  if (whole < 60) {
-    std::snprintf(text, sizeof text, "%ld s", whole);
-  } else if (whole < 3600) {
-    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
-  } else {
-    std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
-  }
-  return text;
-}
-
 std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
@@ -58,6 +45,19 @@ std::string speed_of(double grain_steps, double seconds) {
 
 }  // namespace
 
+std::string duration_in_words(double seconds) {
+  const auto whole = long(std::ceil(seconds));
+  char text[64];
+  if (whole < 60) {
+    std::snprintf(text, sizeof text, "%ld s", whole);
+  } else if (whole < 3600) {
+    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+  }
+  return text;
+}
+
 TerminalLine::TerminalLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 TerminalLine::~TerminalLine() {
@@ -76,6 +76,15 @@ void TerminalLine::write(const std::string& line) {
   std::fprintf(stderr, "\r%s\033[K", text.substr(0, end).c_str());
   std::fflush(stderr);
   shown_ = true;
+}
+
+void TerminalLine::write_at_times(const std::string& line) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!terminal_ || Clock::now() - last_ < std::chrono::milliseconds(200)) return;
+    last_ = Clock::now();
+  }
+  write(line);
 }
 
 void ProgressReport::show(const protocol::PathPoint& reached) {

@@ -10,6 +10,11 @@
 
 namespace rvelab::cli {
 
+using Clock = std::chrono::steady_clock;
+
+/// "40 s", "3 min 05 s", "2 h 10 min".
+std::string duration_in_words(double seconds);
+
 /// A line on standard error that is overwritten, and removed at the end.
 class TerminalLine {
  public:
@@ -19,15 +24,16 @@ class TerminalLine {
   ~TerminalLine();
   /// From any thread. Cut to the width of the terminal.
   void write(const std::string& line);
+  /// The same, at most five times a second.
+  void write_at_times(const std::string& line);
   bool on_terminal() const { return terminal_; }
 
  private:
   const bool terminal_;
   bool shown_ = false;
   std::mutex mutex_;
+  Clock::time_point last_{};
 };
-
-using Clock = std::chrono::steady_clock;
 
 /// The progress of one test for a program that reads it: at most five times a second a line of standard error,
 /// "progress " and a JSON object of the records made, the stage by its number from 0 and its driving strain at the last

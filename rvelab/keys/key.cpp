@@ -6,6 +6,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/edit_distance.hpp"
+#include "rvelab/keys/file_format.hpp"
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/toml_source.hpp"
 
@@ -165,6 +166,8 @@ toml::table parse_toml_text(const std::string& text, const std::string& path) {
   try {
     return parse_toml(text, path);
   } catch (const toml::parse_error& error) {
+    if (const FileFormat* format = format_of(text))
+      throw InputError(path + ": is " + format->what + ", not TOML; give the path of a TOML file");
     const auto& begin = error.source().begin;
     throw InputError(path + ":" + std::to_string(begin.line) + ": column " + std::to_string(begin.column) +
                      ": is not TOML (" + std::string(error.description()) + "); correct the line");

@@ -48,7 +48,10 @@ struct Assembly {
   Place at;
 
   void spend(long substeps) {
-    if (left == nullptr || (left->made += substeps) <= left->most) return;
+    if (left == nullptr) return;
+    left->made += substeps;
+    if (left->on_spent) left->on_spent(left->made);
+    if (left->made <= left->most) return;
     throw NotAtRest("the grains do not come to rest at the stress: " + rest_in_words(rve, goal, left->made));
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -93,6 +94,7 @@ Consolidated consolidate(Drive& drive, const StressGoal& goal, const Rest& rest,
 /// Sub-steps that a consolidation may make, over all of its calls.
 struct StepsLeft {
   long made = 0, most = std::numeric_limits<long>::max();
+  std::function<void(long made)> on_spent = {};  ///< called as they are made
 };
 
 /// Consolidates an assembly. False: the goal is not reached. `deformation` (F, laboratory frame) is multiplied by that

@@ -59,8 +59,9 @@ void shrink(Rve& rve, double strain) {
 }
 
 /// Shrinks the cell until grains that are apart crowd.
-void approach(Rve& rve, int d) {
+void approach(Rve& rve, int d, const DrawWatch& watch) {
   for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
+    watch.at("bringing the grains together", contacts_per_grain(rve) / crowded(d));
     shrink(rve, approach_step);
     if (round == 300) throw IncrementFailed("packing: no contacts after 300 compressions by 1 %; check the radii");
   }
@@ -68,7 +69,7 @@ void approach(Rve& rve, int d) {
 
 /// Shrinks until the grains carry a tenth of the pressure in a cell at rest. A step beyond the pressure is undone and
 /// repeated shorter, else stiff grains would become too dense.
-void press(const Recipe& recipe, Rve& rve) {
+void press(const Recipe& recipe, Rve& rve, const DrawWatch& watch) {
   const int d = dimension_of(recipe.shape);
   const double pressure = mean_pressure(*recipe.stress, d);
   const auto settled_part = [&] {
@@ -81,6 +82,7 @@ void press(const Recipe& recipe, Rve& rve) {
   double strain = press_step;
   double part = settled_part();
   for (int round = 0; part < 0.1; ++round) {
+    watch.after("pressing the grains", 50L * round);
     const Rve before = rve;
     shrink(rve, strain);
     part = settled_part();
@@ -106,113 +108,113 @@ void set_sizes(const Grains& full, double factor, Grains& grains) {
 }
 
 /// The same assembly, at rest, with other sizes; contacts keep their history.
-Rve with_sizes(const Rve& rve, const Grains& full, double factor, const std::atomic<bool>* stop) {
+Rve with_sizes(const Rve& rve, const Grains& full, double factor, const DrawWatch& watch) {
   Specimen s = rve.specimen();
   set_sizes(full, factor, s.grains);
   s.state = SolverState{};
   for (auto* v : {&s.grains.velocity, &s.grains.spin}) std::fill(v->begin(), v->end(), Vector3::Zero());
   Rve other(s);
-  other.watch(stop);
+  other.watch(watch.stop);
   return other;
 }
 
 /// The cell shrinks around grains that were scattered without contact, until they carry a tenth of the recipe's
 /// pressure at rest.
 Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
-                   const std::atomic<bool>* stop) {
+                   const DrawWatch& watch) {
   const int d = dimension_of(recipe.shape);
   Grains grains = graded;
   double volume = solid_volume(recipe, grains) / scattered_fraction(d) * (1 + d * approach_step * uniform());
-  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform, watch)) volume *= 1.1;
   Rve rve(assembly(recipe, friction, grains, cell_of(recipe, volume)));
-  rve.watch(stop);
-  approach(rve, d);
-  press(recipe, rve);
+  rve.watch(watch.stop);
+  approach(rve, d, watch);
+  press(recipe, rve, watch);
   return rve;
 }
 
 /// The same of clumps, which are scattered by the circles (spheres) around them.
 Rve clumps_by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
-                          const std::atomic<bool>* stop) {
+                          const DrawWatch& watch) {
   const int d = dimension_of(recipe.shape);
   const std::vector<const Clump*> clumps = clumps_of(recipe, graded);
   Grains around = around_clumps(clumps, graded);
   double volume = solid_volume(recipe, around) / scattered_fraction(d) * (1 + d * approach_step * uniform());
-  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, around, uniform)) volume *= 1.1;
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, around, uniform, watch)) volume *= 1.1;
   Specimen s = assembly(recipe, friction, Grains{}, cell_of(recipe, volume));
   put_clumps(clumps, graded, around, uniform, s);
   Rve rve(s);
-  rve.watch(stop);
-  approach(rve, d);
-  press(recipe, rve);
+  rve.watch(watch.stop);
+  approach(rve, d, watch);
+  press(recipe, rve, watch);
   return rve;
 }
 
 /// The same of superellipsoids, by the spheres around them.
 Rve solids_by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
-                          const std::atomic<bool>* stop) {
+                          const DrawWatch& watch) {
   Grains grains = graded;
   double volume = 0;
   for (const double reach : reach_of(recipe.shape, grains)) volume += grain_volume(recipe.shape, reach, 1);
   volume *= (1 + 3 * approach_step * uniform()) / scattered_fraction(3);
-  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform, watch)) volume *= 1.1;
   Specimen s = assembly(recipe, friction, Grains{}, cell_of(recipe, volume));
   put_solids(recipe, grains, uniform, s);
   Rve rve(s);
-  rve.watch(stop);
-  approach(rve, 3);
-  press(recipe, rve);
+  rve.watch(watch.stop);
+  approach(rve, 3, watch);
+  press(recipe, rve, watch);
   return rve;
 }
 
 /// The grains are laid in rows that touch (regular.hpp), and the cell then shrinks as above.
-Rve by_rows(const Recipe& recipe, const Grains& graded, double friction, const std::atomic<bool>* stop) {
+Rve by_rows(const Recipe& recipe, const Grains& graded, double friction, const DrawWatch& watch) {
   Grains grains = graded;
   const Cell cell = lay_rows(recipe, grains);
   Rve rve(assembly(recipe, friction, grains, cell));
-  rve.watch(stop);
-  press(recipe, rve);
+  rve.watch(watch.stop);
+  press(recipe, rve, watch);
   return rve;
 }
 
 /// The grains grow, from first_size of their radii, in a cell that stands still; with a stress the cell then shrinks as
 /// above. Without one its void ratio is the recipe's, and grains that can be apart are.
-Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
-              const std::atomic<bool>* stop) {
+Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform, const DrawWatch& watch) {
   const int d = dimension_of(recipe.shape);
   const Preparation& preparation = recipe.preparation;
   double volume = solid_volume(recipe, graded) * (1 + growth_void_ratio(recipe));
   if (recipe.stress) volume *= 1 + d * press_step * uniform();
   const Cell cell = cell_of(recipe, volume);
   Grains grains = graded;
-  if (!scatter(recipe.shape, cell, preparation.first_size, grains, uniform))
+  if (!scatter(recipe.shape, cell, preparation.first_size, grains, uniform, watch))
     throw InputError("preparation.first_size = " + std::to_string(preparation.first_size) +
                      " leaves no room to scatter the grains; allowed: above 0 to below 1; give a smaller one");
   set_sizes(graded, preparation.first_size, grains);
   Rve rve(assembly(recipe, friction, grains, cell));
-  rve.watch(stop);
+  rve.watch(watch.stop);
   const double full_size = recipe.stress ? 1 : 1 + clearance;
   for (double size = preparation.first_size; size < full_size;) {
+    watch.at("growing the grains", size);
     const bool touching = contacts_per_grain(rve) >= crowded(d);
     size = std::min(full_size, size * (touching ? 1.001 : 1.01));
-    rve = with_sizes(rve, graded, size, stop);
+    rve = with_sizes(rve, graded, size, watch);
     rve.relax(1e-3, 50);
   }
   if (recipe.stress) {
-    press(recipe, rve);
+    press(recipe, rve, watch);
     return rve;
   }
   rve.relax(recipe.unbalanced, 50'000);
-  return with_sizes(rve, graded, 1, stop);
+  return with_sizes(rve, graded, 1, watch);
 }
 
 /// The cell of an assembly that has lost its pressure shrinks again, as above.
-Rve pressed_again(const Recipe& recipe, const Rve& rve, const std::atomic<bool>* stop) {
+Rve pressed_again(const Recipe& recipe, const Rve& rve, const DrawWatch& watch) {
   Specimen s = rve.specimen();
   s.solver = unsteered();
   Rve other(s);
-  other.watch(stop);
-  press(recipe, other);
+  other.watch(watch.stop);
+  press(recipe, other, watch);
   return other;
 }
 
@@ -242,7 +244,7 @@ constexpr double still_to_come = 5e-4;
 
 /// The assembly with the number of sub-steps by its balance. The overlaps at the final pressure set the scale of the
 /// strain per sub-step; with those of the start it would be far too small. The density does not depend on that balance.
-Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop) {
+Rve steered(const Rve& rve, const Recipe& recipe, const DrawWatch& watch) {
   Specimen s = rve.specimen();
   s.solver = SolverOptions{};
   s.solver.target_unbalanced = 1e-2;
@@ -258,7 +260,7 @@ Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop)
     s.state.reference.overlap = 3 * overlap * std::clamp(rise, 1.0, 10.0);
   }
   Rve other(s);
-  other.watch(stop);
+  other.watch(watch.stop);
   return other;
 }
 
@@ -294,27 +296,28 @@ bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, co
 
 }  // namespace
 
-Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop) {
+Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& watch) {
   const int d = dimension_of(recipe.shape);
   Uniform uniform(recipe.seed, std::uint64_t(number));
   const Grains graded = graded_grains(recipe);
   const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
-  Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, stop)
-            : moves_as_body(recipe.shape) ? solids_by_compression(recipe, graded, friction, uniform, stop)
-            : recipe.clumps               ? clumps_by_compression(recipe, graded, friction, uniform, stop)
-            : growth                      ? by_growth(recipe, graded, friction, uniform, stop)
-                                          : by_compression(recipe, graded, friction, uniform, stop);
+  Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, watch)
+            : moves_as_body(recipe.shape) ? solids_by_compression(recipe, graded, friction, uniform, watch)
+            : recipe.clumps               ? clumps_by_compression(recipe, graded, friction, uniform, watch)
+            : growth                      ? by_growth(recipe, graded, friction, uniform, watch)
+                                          : by_compression(recipe, graded, friction, uniform, watch);
 
-  rve = steered(rve, recipe, stop);
+  rve = steered(rve, recipe, watch);
   Draw result;
   result.friction = friction;
   const Matrix3 frame = rve.cell().rotation;  // as it was drawn: what came before shrank it
   Matrix3 deformation = Matrix3::Identity();
   if (recipe.stress) {
-    StepsLeft left{0, most_substeps(recipe)};
+    StepsLeft left{0, most_substeps(recipe),
+                   [&](long substeps) { watch.after("bringing the grains to rest at the stress", substeps); }};
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
     for (int attempt = 0; !consolidate(rve, goal, prepared, deformation, &left) && attempt < most_attempts; ++attempt) {
-      rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
+      rve = steered(pressed_again(recipe, rve, watch), recipe, watch);
     }
     expect_overlaps(recipe, rve, 1.5);  // this far beyond, no later step helps
     rve.set_materials(recipe.materials);

@@ -2,9 +2,8 @@
 // final friction.
 #pragma once
 
-#include <atomic>
-
 #include "rvelab/error.hpp"
+#include "rvelab/pack/draw_watch.hpp"
 #include "rvelab/pack/recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -27,6 +26,6 @@ struct Draw {
 
 /// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same three.
 /// IncrementFailed if the grains do not come to the stress; NotAtRest; OverlapBeyondLimit; Interrupted.
-Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop);
+Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& watch);
 
 }  // namespace rvelab::pack

@@ -164,7 +164,7 @@ void read_fraction(TableReader& reader, Recipe& recipe, bool ellipsoids) {
   read_grading(reader, fraction.grading);
   if (reader.mistakes() == mistakes) {
     try {
-      check_grading(fraction.grading, ("grains." + fraction.name).c_str());
+      check_grading(fraction.grading, fraction.table().c_str());
     } catch (const InputError& error) {
       reader.mistake(error.what());
     }
@@ -187,9 +187,9 @@ void read_grains(const toml::table& file, Recipe& recipe, bool ellipsoids, toml:
   toml::array list;
   recipe.fractions.clear();
   const auto read = [&](const toml::table& table) {
-    const std::string where =
-        table.contains("name") ? "grains." + table["name"].value_or(std::string("grains")) : "grains";
-    TableReader reader(table, "grains", where, line_of(table), errors);
+    GrainFraction named;
+    named.name = table["name"].value_or(named.name);
+    TableReader reader(table, "grains", named.table(), line_of(table), errors);
     read_fraction(reader, recipe, ellipsoids);
     reader.finish();
     list.push_back(reader.resolved());
@@ -381,9 +381,10 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   }
 }
 
-/// Whether its grains can carry its largest pressure, and are likely to be meant for it.
+/// Whether its grains are many enough, can carry its largest pressure, and are likely to be meant for it.
 void read_together(const RecipeFile& file, std::vector<KeyError>& errors) {
   const Recipe& recipe = file.recipe;
+  for (const std::string& line : too_few_grains(recipe)) errors.push_back({0, line, false, true});
   if (!recipe.stress) return;
   const int d = dimension_of(recipe.shape);
   double pressure = mean_pressure(*recipe.stress, d);

@@ -55,11 +55,11 @@ void check_recipe(const Recipe& recipe) {
   double shares = 0;
   for (const GrainFraction& fraction : recipe.fractions) {
     if (recipe.clumps != fraction.clump.has_value())
-      throw InputError("grains." + fraction.name + " has " + (recipe.clumps ? "no clump" : "a clump") +
-                       ", pack.shape is " + (recipe.clumps ? "\"clump\"" : "not \"clump\"") + "; correct one");
-    check_grading(fraction.grading, ("grains." + fraction.name).c_str());
+      throw InputError(fraction.table() + " has " + (recipe.clumps ? "no clump" : "a clump") + ", pack.shape is " +
+                       (recipe.clumps ? "\"clump\"" : "not \"clump\"") + "; correct one");
+    check_grading(fraction.grading, fraction.table().c_str());
     if (fraction.material >= recipe.materials.size())
-      throw InputError("grains." + fraction.name + " names a material that is not there; add it");
+      throw InputError(fraction.table() + " names a material that is not there; add it");
     shares += fraction.share;
   }
   if (!(std::abs(shares - 1) <= 1e-6)) {

@@ -32,6 +32,9 @@ struct GrainFraction {
   double bedding_angle = 0,
          bedding_spread = 90;  ///< degrees: from x to the long axes on average; to either side, every
                                ///< angle equally frequent. As they are laid, before they are pressed
+
+  /// Its table, as messages name it: "grains", "grains.fine".
+  std::string table() const { return name == GrainFraction{}.name ? name : "grains." + name; }
 };
 
 /// How a specimen is brought from scattered grains to contact.

@@ -51,12 +51,12 @@ void check_regular(const Recipe& recipe) {
                      grading.smallest_radius == grading.largest_radius &&
                      fraction.smallest_aspect_ratio == fraction.largest_aspect_ratio;
   if (!alike)
-    refuse("grains." + fraction.name + ": " + method +
+    refuse(fraction.table() + ": " + method +
            " takes grains of one size and form; allowed: one [grains], smallest_radius_m = largest_radius_m and "
            "smallest_aspect_ratio = largest_aspect_ratio; make them equal");
   if (keeps_axis(recipe.shape) && fraction.bedding_spread != 0)
-    refuse("grains." + fraction.name + ".bedding_spread_deg = " + in_words(fraction.bedding_spread) + " contradicts " +
-           method + ", whose grains lie alike; allowed: 0; set it");
+    refuse(fraction.table() + ".bedding_spread_deg = " + in_words(fraction.bedding_spread) + " contradicts " + method +
+           ", whose grains lie alike; allowed: 0; set it");
   if (row_counts(recipe.number, fraction.smallest_aspect_ratio).rows == 0) {
     const std::size_t nearest = std::max<std::size_t>(4, (recipe.number + 2) / 4 * 4);
     refuse("pack.number = " + std::to_string(recipe.number) + " makes no rows; allowed with " + method +

@@ -18,13 +18,7 @@ constexpr int most_tries = 2000;
 
 /// How many grains each fraction gets: whole numbers nearest to the shares that add up to the recipe's number.
 std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<NumberCurve>& curves) {
-  const int d = dimension_of(recipe.shape);
-  std::vector<double> parts;
-  for (std::size_t f = 0; f < curves.size(); ++f) {
-    const GrainFraction& fraction = recipe.fractions[f];
-    const double mass = recipe.materials[fraction.material].density * curves[f].mean_power(d);
-    parts.push_back(recipe.share_by_mass ? fraction.share / mass : fraction.share);
-  }
+  std::vector<double> parts = parts_of(recipe, curves);
   const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
   std::vector<std::size_t> numbers;
   std::vector<std::size_t> order(parts.size());
@@ -44,10 +38,13 @@ std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<Numb
 /// Points of a cell in boxes that are at least as wide as the reach of a contact, periodic.
 class Boxes {
  public:
-  Boxes(const Cell& cell, double reach)
+  /// For `points` of them.
+  Boxes(const Cell& cell, double reach, std::size_t points)
       : cell_(cell), inverse_(cell.lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity())) {
     const Vector3 height = heights(cell);
-    for (int k = 0; k < cell.dimension; ++k) count_[k] = std::max(1, int(std::min(200.0, height[k] / reach)));
+    const double many = 8 * double(points),
+                 most = std::min(200.0, cell.dimension == 2 ? std::sqrt(many) : std::cbrt(many));
+    for (int k = 0; k < cell.dimension; ++k) count_[k] = std::max(1, int(std::min(most, height[k] / reach)));
     content_.resize(std::size_t(count_[0]) * count_[1] * count_[2]);
   }
 
@@ -137,6 +134,17 @@ void lay_outline(const GrainFraction& fraction, Uniform& uniform, Grains& grains
 
 }  // namespace
 
+std::vector<double> parts_of(const Recipe& recipe, const std::vector<NumberCurve>& curves) {
+  const int d = dimension_of(recipe.shape);
+  std::vector<double> parts;
+  for (std::size_t f = 0; f < curves.size(); ++f) {
+    const GrainFraction& fraction = recipe.fractions[f];
+    const double mass = recipe.materials[fraction.material].density * curves[f].mean_power(d);
+    parts.push_back(recipe.share_by_mass ? fraction.share / mass : fraction.share);
+  }
+  return parts;
+}
+
 Grains graded_grains(const Recipe& recipe) {
   const int d = dimension_of(recipe.shape);
   std::vector<NumberCurve> curves;
@@ -146,7 +154,7 @@ Grains graded_grains(const Recipe& recipe) {
   Grains grains;
   for (std::size_t f = 0; f < curves.size(); ++f) {
     if (numbers[f] == 0) {
-      throw InputError("grains." + recipe.fractions[f].name + " gets no grain of " + std::to_string(recipe.number) +
+      throw InputError(recipe.fractions[f].table() + " gets no grain of " + std::to_string(recipe.number) +
                        "; allowed: at least one for each fraction; raise pack.number or the fraction's share");
     }
     for (const double radius : radii_of(curves[f], numbers[f], uniform)) {
@@ -255,25 +263,40 @@ Cell cell_of(const Recipe& recipe, double volume) {
   return d == 2 ? kraynik_reinelt_cell(volume, recipe.thickness) : cubic_field_cell(volume);
 }
 
-bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform) {
+bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform, const DrawWatch& watch) {
   const std::vector<double> reach = reach_of(shape, grains);
   const double largest = size * *std::max_element(reach.begin(), reach.end());
   if (shortest_vector(cell) < 2 * largest) return false;
-  Boxes boxes(cell, 2 * largest);
+  // Boxes of their own for each halving of the radius: in those of the largest grains, the smallest of a wide grading
+  // would all lie together.
+  const auto level_of = [&](double radius) { return std::size_t(std::max(0, std::ilogb(largest / radius))); };
+  std::vector<std::size_t> of_level;
+  for (const double each : reach) {
+    const std::size_t level = level_of(size * each);
+    if (of_level.size() <= level) of_level.resize(level + 1);
+    ++of_level[level];
+  }
+  std::vector<Boxes> levels;
+  for (std::size_t level = 0; level < of_level.size(); ++level)
+    levels.emplace_back(cell, 2 * std::ldexp(largest, -int(level)), of_level[level]);
   std::vector<std::size_t> order(grains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return reach[a] > reach[b]; });
+  std::size_t done = 0;
   for (const std::size_t g : order) {
     const double radius = size * reach[g];
+    const std::size_t level = level_of(radius);
+    if (done++ % 64 == 0) watch.at("scattering the grains", double(done) / double(order.size()));
     bool placed = false;
     for (int k = 0; k < most_tries && !placed; ++k) {
       Vector3 part = Vector3::Zero();
       for (int axis = 0; axis < cell.dimension; ++axis) part[axis] = uniform() - 0.5;
       Vector3 at = cell.lattice * part;
       wrap(cell, at);
-      placed = boxes.free(at, radius);
+      placed = std::all_of(levels.begin(), levels.begin() + std::ptrdiff_t(level) + 1,
+                           [&](const Boxes& boxes) { return boxes.free(at, radius); });
       if (placed) {
-        boxes.add(at, radius);
+        levels[level].add(at, radius);
         grains.position[g] = at;
       }
     }

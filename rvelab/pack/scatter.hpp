@@ -1,9 +1,13 @@
 // Grains without a contact: those of a recipe, scattered in a cell.
 #pragma once
 
+#include "rvelab/pack/draw_watch.hpp"
 #include "rvelab/pack/recipe.hpp"
 
 namespace rvelab::pack {
+
+/// Parts of the number of all grains that the fractions get, with gradings by number `curves`; their sum is any.
+std::vector<double> parts_of(const Recipe& recipe, const std::vector<NumberCurve>& curves);
 
 /// The grains of a recipe, all at the origin: radii, materials, lengths and orientations by its gradings and seed, the
 /// same for every draw. InputError if a fraction gets no grain.
@@ -25,7 +29,7 @@ Cell cell_of(const Recipe& recipe, double volume);
 
 /// Random places in the cell at which no circle (sphere) around a grain, `size` times as large, touches another; the
 /// largest are placed first. Cell frame, m. False: no place was found for one of them.
-bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform);
+bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform, const DrawWatch& watch = {});
 
 /// Superellipsoids for graded grains, which have their sizes and places: bodies, turned as the recipe says.
 void put_solids(const Recipe& recipe, const Grains& graded, Uniform& uniform, Specimen& specimen);

@@ -170,7 +170,7 @@ class Search {
       if (number > found) return;  // an earlier one was accepted: nobody will look at this one
       Draw& made = draws_[number];
       try {
-        made = draw(recipe_, long(number) + 1, made.friction, watch_.stop);
+        made = draw(recipe_, long(number) + 1, made.friction, watch_.of(long(number) + 1));
       } catch (const OverlapBeyondLimit& failure) {
         failures_[number] = failure.what();
         if (number == 0) overlap_ = std::current_exception();
@@ -268,7 +268,7 @@ Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
   Draw made;
   try {
-    made = draw(recipe, 1, only_friction(recipe), watch.stop);
+    made = draw(recipe, 1, only_friction(recipe), watch.of(1));
   } catch (const NotAtRest& failure) {
     throw IncrementFailed("packing: " + std::string(failure.what()) + remedy_of_unrest);
   }

@@ -31,10 +31,15 @@ double fitted_coordinate(const std::vector<CurvePoint>& points, double target, d
 /// Draws made at a time, whatever the number of threads: so the next ones know the same draws.
 inline constexpr long draws_at_a_time = 4;
 
-/// Progress of a search: called after each draw, on any thread.
+/// Progress of a search, on any thread.
 struct PackWatch {
-  std::function<void(long draw, double void_ratio)> on_draw;
+  std::function<void(long draw, double void_ratio)> on_draw;          ///< after each draw
+  std::function<void(long draw, const std::string& phase)> on_phase;  ///< often, while it is made
   const std::atomic<bool>* stop = nullptr;
+  DrawWatch of(long draw) const {
+    if (!on_phase) return {stop};
+    return {stop, [this, draw](const std::string& phase) { on_phase(draw, phase); }};
+  }
 };
 
 /// Makes the specimen of a recipe. The same recipe gives the same bits, whatever the number of workers. Error naming

@@ -92,7 +92,8 @@ std::string strength_stages();
 Specimen with_overrides(const Protocol& protocol, Specimen specimen);
 
 /// What is likely in another unit: in the protocol, in the specimen with its overrides, and in both together (overlaps
-/// that follow from the pressures). One line each. InputError as with_overrides.
+/// that follow from the pressures); and what lies outside the tables and formulas of its stages. One line each.
+/// InputError as with_overrides.
 std::vector<std::string> unusual_in(const Protocol& protocol, const Specimen& specimen);
 
 /// Every key that a protocol or a recipe may have, in the order of its tables: those of the protocol itself ("test",

@@ -339,6 +339,9 @@ std::vector<std::string> unusual_in(const Protocol& protocol, const Specimen& sp
                                    [&](const std::string& doubt) { return last_name(doubt) == last_name(line); });
     if (!known) doubts.push_back(line);
   }
+  for (const Stage& stage : protocol.stages)
+    for (const std::string& line : stage.what->outside_ranges(used))
+      doubts.push_back("stage." + stage.name + (line.find(" = ") == std::string::npos ? ": " : ".") + line);
   return doubts;
 }
 

@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/interaction/interaction.hpp"
+#include "rvelab/interaction/outside.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/drive.hpp"
@@ -24,7 +25,7 @@ struct FormingSettings {
   std::optional<double> target;
 };
 
-/// Pairs that have such an interaction, or get one since they touch.
+/// Pairs that have such an interaction, or get one since they touch; without the stiffness of their contact.
 template <class Law>
 std::vector<GrainPair> formed_pairs(const Network& net) {
   using Key = std::tuple<std::int32_t, std::int32_t, Image>;
@@ -40,6 +41,22 @@ std::vector<GrainPair> formed_pairs(const Network& net) {
     found.push_back({net.grains[std::size_t(pair->i)].radius, net.grains[std::size_t(pair->j)].radius,
                      net.dimension() == 2 ? net.cell.lattice(2, 2) : 0, -pair->overlap, 0});
   return found;
+}
+
+/// The same with that stiffness; where no grains touch, two of each radius that do.
+template <class Law>
+std::vector<GrainPair> pairs_of(const Specimen& specimen, const Network& net) {
+  std::vector<GrainPair> pairs = formed_pairs<Law>(net);
+  const double thickness = net.dimension() == 2 ? net.cell.lattice(2, 2) : 0;
+  if (pairs.empty())
+    for (const double radius : specimen.grains.radius) pairs.push_back({radius, radius, thickness, 0, 0});
+  if (!with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::needs_root_overlap; })) return pairs;
+  const Material& material = specimen.materials.front();
+  for (GrainPair& pair : pairs)
+    pair.contact_stiffness = mix(specimen.contact, specimen.damping, material, pair.radius_i, 1, material,
+                                 pair.radius_j, 1, grain_section(specimen.shape, pair.radius_i, thickness))
+                                 .kn;
+  return pairs;
 }
 
 template <class Law>
@@ -111,6 +128,17 @@ struct Forming : KindOf<FormingSettings<Law>> {
       }
     }
     return settings;
+  }
+
+  std::vector<std::string> outside_ranges(const Specimen& specimen) const override {
+    if (stage.removed || !is_round(specimen.shape) || specimen.grains.radius.empty()) return {};
+    const Rve rve(specimen);
+    const Network net = rve.network();
+    try {
+      return rvelab::outside_ranges(settings_in(rve), pairs_of<Law>(specimen, net), pore_volume(net));
+    } catch (const InputError&) {  // the stage says so when it is reached, of the specimen as it is then
+      return {};
+    }
   }
 
   void drive(RunningTest& test) const override {

@@ -8,6 +8,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "rvelab/interaction/laws.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -34,6 +35,9 @@ class StageKind {
   virtual std::string misfit(int /*dimension*/) const { return ""; }
   /// What it names and the specimen has not, with the remedy; "": nothing.
   virtual std::string lacking_in(const Specimen& /*specimen*/) const { return ""; }
+  /// What of its settings lies outside the tables and formulas that it uses, for the grains of this specimen; a line
+  /// each.
+  virtual std::vector<std::string> outside_ranges(const Specimen& /*specimen*/) const { return {}; }
   /// What calibration may read from its records.
   virtual StageRole role() const { return {}; }
   /// Settings with which that is a strength, in words; "": never.

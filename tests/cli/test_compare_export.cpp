@@ -61,6 +61,16 @@ TEST_CASE("a cemented test says how many bonds there are, shows them in ParaView
   REQUIRE(ran.code == 0);
   const auto seen = nlohmann::json::parse(here.run("inspect C.h5 --json").output);
   CHECK(seen["bonds"] > 60);
+  // Bonds that break at a touch are none: they are counted apart.
+  const std::string weak = "tensile_strength_Pa=1e-6 --set stage.cement.cohesion_Pa=1e-6";
+  REQUIRE(here.run("run biaxial_cemented --specimen S.h5 -o W.h5 --set stage.compression.to_strain=0.002 --set "
+                   "stage.cement." +
+                   weak)
+              .code == 0);
+  const auto broken = nlohmann::json::parse(here.run("inspect W.h5 --json").output);
+  CHECK(broken["bonds"] < 10);
+  CHECK(broken["bonds"].get<long>() + broken["bonds_broken"].get<long>() ==
+        seen["bonds"].get<long>() + seen["bonds_broken"].get<long>());
   const auto exported = [&](const std::string& format) {
     return nlohmann::json::parse(here.run("export C.h5 --format " + format + " -o " + format + " --json").output);
   };

@@ -98,6 +98,28 @@ TEST_CASE("pack says what is wrong before it works, and what was reached after i
   CHECK(!std::filesystem::exists(here / "S.h5"));
 }
 
+TEST_CASE("a packing stops within a second of the signal, while it draws and scatters a million grains too") {
+  const Workplace here;
+  std::string text = small;
+  const auto grains = text.find("smallest_radius_m"), end = text.find("[target]");
+  text.replace(grains, end - grains, "passing_by = \"mass\"\nsmallest_radius_m = 1e-6\nlargest_radius_m = 1e-3\n");
+  text.replace(text.find("number = "), text.find('\n', text.find("number = ")) - text.find("number = "),
+               "number = 1000000\nshape = \"sphere\"");
+  here.write("wide.toml", text);
+  for (const char* after : {"0.3", "1.5", "4"}) {
+    CAPTURE(after);
+    const Outcome outcome = here.run(
+        std::string("--preserve-status -s TERM -k 15 ") + after + " " + RVELAB_PROGRAM + " pack wide.toml -o W.h5",
+        "timeout");
+    INFO(outcome.errors);
+    CHECK(outcome.code == 143);  // 137: it had to be killed
+    CHECK_THAT(outcome.errors,
+               Contains("warning: wide.toml: pack.number = 1000000 is few for radii of 1e-06 to 0.001 m") &&
+                   Contains("stopped by SIGTERM; 0 of 1 specimens are made"));
+    CHECK(!std::filesystem::exists(here / "W.h5"));
+  }
+}
+
 TEST_CASE("protocols lists recipes apart from tests") {
   const Workplace here;
   const std::string text = here.run("protocols").output;

@@ -111,6 +111,26 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
     CHECK(json["cell_edges_in_diameters"][0].get<double>() == Approx(network.cell.lattice.col(0).norm() / diameter));
     CHECK(json["void_ratio"].get<double>() == Approx(rvelab::void_ratio(network)));
     CHECK(json.count("proportions") == 0);
+    // The grading by mass, and the largest grain.
+    double mass = 0, largest = 0, of_largest = 0;
+    for (const auto& grain : network.grains) {
+      mass += grain.mass;
+      largest = std::max(largest, 2 * grain.radius);
+      of_largest = std::max(of_largest, grain.mass);
+    }
+    for (const auto& [key, part] : {std::pair("d10_m", 0.1), {"d50_m", 0.5}, {"d90_m", 0.9}}) {
+      CAPTURE(key);
+      double below = 0, with = 0;
+      for (const auto& grain : network.grains) {
+        if (2 * grain.radius < json[key].get<double>()) below += grain.mass;
+        if (2 * grain.radius <= json[key].get<double>()) with += grain.mass;
+      }
+      CHECK(below <= part * mass * (1 + 1e-12));
+      CHECK(with >= part * mass * (1 - 1e-12));
+    }
+    CHECK(json["largest_grain_mass_share"].get<double>() == Approx(of_largest / mass));
+    CHECK(json["cell_over_largest_diameter"].get<double>() ==
+          Approx(rvelab::heights(network.cell).head(d).minCoeff() / largest));
   }
   // The same line from pack and from import.
   const std::string shown = here.run("inspect P.h5").output;

@@ -111,5 +111,33 @@ TEST_CASE("a packed file that is cut, damaged or grows beyond all text is refuse
   CHECK_THAT(read_as(packed + "more").error, Contains("other bytes follow the gzip data"));
   const std::string bomb = gzipped(std::string(100 << 20, '\n'));
   CHECK_THAT(read_as(bomb).error, Contains("unpacks to more than") && Contains("gunzip"));
-  CHECK_THAT(read_as("\x28\xb5\x2f\xfd....").error, Contains("packed by zstd") && Contains("unzstd"));
+}
+
+TEST_CASE("a file that is no text is named as what it is, packed or not, with what makes a text of it") {
+  using namespace std::string_literals;
+  const std::string number(8, '\x01'), rest(40, '\xff');
+  const struct {
+    std::string head;
+    const char *what, *remedy;
+  } files[] = {
+      {"LammpS RestartT\0"s, "a binary restart file of LAMMPS", "write_data"},
+      {number + "DUMPCUSTOM", "a binary dump of LAMMPS", "write_dump"},
+      {"\x89HDF\r\n\x1a\n", "an HDF5 file", "rvelab export"},
+      {"\x28\xb5\x2f\xfd", "packed by zstd", "unzstd"},
+      {"BZh9", "packed by bzip2", "bunzip2"},
+      {"PK\x03\x04", "packed by zip", "as CSV"},
+      {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a workbook of Excel (.xls)", "as CSV"},
+      {"\x93NUMPY\x01\0"s, "an array of numpy (.npy)", "numpy.savetxt"},
+      {"# vtk DataFile Version 3.0\npacking\nBINARY\n", "a VTK file", "ParaView"},
+      {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">", "a VTK file", "ParaView"},
+      {"\x16\0\0\0\0\0\0\0serialization::archive"s, "a save of YADE", "export.text"},
+      {"<?xml version=\"1.0\"?>\n<!DOCTYPE boost_serialization>", "a save of YADE", "export.text"},
+  };
+  for (const auto& [head, what, remedy] : files) {
+    CAPTURE(what);
+    for (const std::string& bytes : {head + rest, gzipped(head + rest)})
+      CHECK_THAT(read_as(bytes).error, Contains(std::string("is ") + what + "; allowed: text") && Contains(remedy));
+    CHECK_THAT(input_error([&, &head = head] { keys::parse_toml_text(head + rest, "r.toml"); }),
+               Contains(std::string("r.toml: is ") + what + ", not TOML"));
+  }
 }

@@ -20,7 +20,8 @@ namespace {
 pack::RecipeFile recipe_of(const std::string& settings_of_material, const std::string& pressure = "100e3",
                            const std::string& law = "linear", const std::string& head = "number = 100",
                            const std::string& radii = "smallest_radius_m = 3e-3\nlargest_radius_m = 7e-3") {
-  return pack::parse_recipe("[pack]\nname = \"a\"\n" + head + "\n[grains]\n" + radii +
+  return pack::parse_recipe("[pack]\nname = \"a\"\n" + head + "\n" +
+                                (radii.starts_with("name") ? "[[grains]]\n" : "[grains]\n") + radii +
                                 "\n[target]\npressure_Pa = " + pressure + "\n[contact]\nlaw = \"" + law +
                                 "\"\n[[material]]\nname = \"sand\"\n" + settings_of_material + "\n",
                             "r.toml");
@@ -99,15 +100,45 @@ TEST_CASE("no shipped recipe is told to be in other units") {
   CHECK(recipes > 12);
 }
 
+TEST_CASE("a grading that asks for more grains is told, with how many it asks for") {
+  const std::string sand = "young_modulus_Pa = 7e9\nfriction = 0.5";
+  const std::string wide =
+      "grading = \"tabulated\"\npassing_by = \"mass\"\nradii_m = [80e-6, 110e-6, 160e-6, 230e-6, 320e-6, 450e-6, "
+      "650e-6, 1000e-6]\npassing = [0, 0.09, 0.22, 0.34, 0.46, 0.62, 0.80, 1]";
+  const auto doubts = [&](const std::string& head, const std::string& radii) {
+    return recipe_of(sand, "100e3", "linear", head, radii).doubts;
+  };
+  const auto few = doubts("shape = \"sphere\"\nnumber = 500", wide);
+  REQUIRE(few.size() == 1);
+  CHECK_THAT(few[0], Contains("pack.number = 500 is few for radii of 8e-05 to 0.001 m (1 : 12.5)") &&
+                         Contains("% of the mass") && Contains("largest diameters long"));
+  // As many as it asks for are enough.
+  const auto at = few[0].find("which takes ") + 12;
+  const long enough = long(std::stod(few[0].substr(at)) * 1.01);
+  CHECK(enough > 1000);
+  CHECK(doubts("shape = \"sphere\"\nnumber = " + std::to_string(enough), wide).empty());
+  CHECK(!doubts("shape = \"sphere\"\nnumber = " + std::to_string(enough / 2), wide).empty());
+  const std::string usual = "smallest_radius_m = 3e-3\nlargest_radius_m = 7e-3";
+  CHECK(doubts("number = 60", usual).empty());
+  CHECK(doubts("number = 20", usual).size() == 1);
+  // One stone in a sand.
+  const pack::RecipeFile stone = recipe_of(sand, "100e3", "linear", "number = 1000",
+                                           "name = \"sand\"\nshare = 0.999\nsmallest_radius_m = 1e-3\nlargest_radius_m "
+                                           "= 1e-3\n[[grains]]\nname = \"stone\"\n"
+                                           "share = 0.001\nsmallest_radius_m = 1e-2\nlargest_radius_m = 1e-2");
+  REQUIRE(stone.doubts.size() == 1);
+  CHECK_THAT(stone.doubts[0], Contains("the largest grain is 9.1 % of the mass"));
+}
+
 TEST_CASE("hard and soft materials of analogue tests are usual") {
   // Steel and glass beads at 1 kPa, rubber balls at 2 kPa.
   CHECK(recipe_of("young_modulus_Pa = 210e9\npoisson_ratio = 0.3\nfriction = 0.1", "1e3", "hertz_mindlin",
-                  "shape = \"sphere\"\nnumber = 100")
+                  "shape = \"sphere\"\nnumber = 300")
             .doubts.empty());
-  CHECK(recipe_of("young_modulus_Pa = 70e9\nfriction = 0.1", "1e3", "linear", "shape = \"sphere\"\nnumber = 100")
+  CHECK(recipe_of("young_modulus_Pa = 70e9\nfriction = 0.1", "1e3", "linear", "shape = \"sphere\"\nnumber = 300")
             .doubts.empty());
   CHECK(recipe_of("young_modulus_Pa = 1e6\npoisson_ratio = 0.49\nfriction = 0.8", "2e3", "hertz_mindlin",
-                  "shape = \"sphere\"\nnumber = 100")
+                  "shape = \"sphere\"\nnumber = 300")
             .doubts.empty());
 }
 

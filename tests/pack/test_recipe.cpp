@@ -2,7 +2,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
+#include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "tests/catch.hpp"
@@ -173,7 +175,7 @@ young_modulus_Pa = -1
   for (const char* part :
        {"r.toml:3: pack.number = 0 is out of range; allowed: 1 to 1e+08",
         "r.toml:4: unknown key pack.shap; the nearest known key is pack.shape",
-        "grains.grains.smallest_radius_m = 0.007 and grains.grains.largest_radius_m = 0.003",
+        "grains.smallest_radius_m = 0.007 and grains.largest_radius_m = 0.003",
         "r.toml:8: grains.material = 'gravel' is no material of the recipe; allowed: sand",
         "r.toml:10: target.pressure_kPa is not known; write target.pressure_Pa, 1 kPa = 1000 Pa",
         "r.toml:11: target.stress_Pa = [ -100000.0, -100000.0 ] is not a stress in 2D; allowed: [xx, yy, xy]",
@@ -181,6 +183,37 @@ young_modulus_Pa = -1
         "r.toml:15: preparation.highest_friction = 0.5 is not above preparation.lowest_friction",
         "r.toml:19: material.young_modulus_Pa = -1 is out of range"})
     CHECK_THAT(message, Contains(part));
+}
+
+TEST_CASE("a message names each key of a recipe by its table and name, and no table twice") {
+  const std::regex doubled(R"((^|[^.\w])(\w+)\.\2\.)");
+  const auto check = [&](const std::string& message, const std::string& key) {
+    INFO(message);
+    CHECK_THAT(message, Contains(key));
+    CHECK(!std::regex_search(message, doubled));
+  };
+  std::vector<keys::Key> all = pack::recipe_keys();
+  all.insert(all.end(), keys::known_keys().begin(), keys::known_keys().end());
+  REQUIRE(all.size() > 60);
+  for (const keys::Key& key : all) {
+    check(message_of(small, {key.dotted() + "=1979-05-27"}), key.dotted() + " = ");  // no key takes a day
+    check(message_of(small, {key.dotted() + "x=1"}), "unknown key " + key.dotted());
+  }
+  // What is found once all keys are read.
+  const std::string table = "grains.grading=tabulated";
+  const std::string bare = std::string(small).erase(std::string(small).find("smallest"), 52);
+  check(message_of(bare, {table, "grains.passing=[0, 1]"}), "grains.radii_m has 0 values");
+  check(message_of(bare, {table, "grains.radii_m=[2e-3, 1e-3]", "grains.passing=[0, 1]"}),
+        "grains.radii_m is not ascending");
+  check(message_of(bare, {table, "grains.radii_m=[1e-3, 2e-3]", "grains.passing=[0.1, 1]"}),
+        "grains.passing does not rise");
+  check(message_of(small, {"preparation.method=regular"}), "grains: preparation.method");
+  const std::string lying = "grains.bedding_spread_deg=10", equal = "grains.largest_radius_m=3e-3";
+  check(message_of(small, {"preparation.method=regular", "pack.shape=ellipse", lying, equal}),
+        "grains.bedding_spread_deg = 10 contradicts");
+  // A fraction with a name of its own has it in every message.
+  check(message_of(mixture, {"grains.fine.smallest_radius_m=5e-3"}), "grains.fine.smallest_radius_m = 0.005");
+  check(message_of(mixture, {"grains.fine.bedding_angle_deg=5"}), "grains.fine.bedding_angle_deg = 5");
 }
 
 TEST_CASE("what contradicts something else is refused by name") {

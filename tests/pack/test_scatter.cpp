@@ -1,6 +1,9 @@
 // Grains scattered in a cell: none touches another, their grading is the recipe's.
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "rvelab/error.hpp"
 #include "rvelab/pack/scatter.hpp"
@@ -94,4 +97,61 @@ TEST_CASE("the grains of a recipe are the same for every draw, and others for an
   CHECK(pack::graded_grains(recipe).radius == radii);
   recipe.seed = 2;
   CHECK(pack::graded_grains(recipe).radius != radii);
+}
+
+TEST_CASE("grains of a wide grading get the places that looking at all of them gives") {
+  for (pack::Recipe recipe : {discs(300), spheres(300)}) {
+    Grading& grading = recipe.fractions[0].grading;
+    grading = {GradingCurve::linear, false, 2e-5, 2e-3, {}, {}};  // 1 : 100, seven halvings of the radius
+    Grains grains = pack::graded_grains(recipe), compared = grains;
+    const Cell cell = pack::cell_of(recipe, pack::solid_volume(recipe, grains) / 0.25);
+    Uniform uniform(3), again(3);
+    REQUIRE(pack::scatter(recipe.shape, cell, 1, grains, uniform));
+    std::vector<std::size_t> order(grains.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return grains.radius[a] > grains.radius[b]; });
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const std::size_t g = order[n];
+      const auto free = [&](const Vector3& at) {
+        for (std::size_t m = 0; m < n; ++m) {
+          Vector3 branch = compared.position[order[m]] - at;
+          wrap(cell, branch);
+          const double reach = compared.radius[order[m]] + compared.radius[g];
+          for (int image = 0; image < 27; ++image) {
+            const Image shift{image % 3 - 1, image / 3 % 3 - 1, cell.dimension == 3 ? image / 9 - 1 : 0};
+            if ((branch + translation(cell, shift)).squaredNorm() < reach * reach) return false;
+          }
+        }
+        return true;
+      };
+      Vector3 at;
+      do {
+        Vector3 part = Vector3::Zero();
+        for (int axis = 0; axis < cell.dimension; ++axis) part[axis] = again() - 0.5;
+        at = cell.lattice * part;
+        wrap(cell, at);
+      } while (!free(at));
+      compared.position[g] = at;
+    }
+    CHECK(grains.position == compared.position);
+  }
+}
+
+TEST_CASE("a draw says where it is, and stops in every phase") {
+  const pack::Recipe recipe = discs(60);
+  std::vector<std::string> phases;
+  pack::draw(recipe, 1, 0.1, {nullptr, [&](const std::string& phase) {
+                                const std::string name = phase.substr(0, phase.find(','));
+                                if (phases.empty() || phases.back() != name) phases.push_back(name);
+                              }});
+  REQUIRE(phases.size() >= 4);
+  CHECK(phases.front() == "scattering the grains");
+  for (const std::string& phase : phases) {
+    CAPTURE(phase);
+    std::atomic<bool> stop{false};
+    CHECK_THROWS_AS(
+        pack::draw(recipe, 1, 0.1, {&stop, [&](const std::string& now) { stop = stop || now.starts_with(phase); }}),
+        Interrupted);
+  }
 }

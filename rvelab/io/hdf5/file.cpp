@@ -9,6 +9,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/publish.hpp"
+#include "rvelab/keys/file_format.hpp"
 #include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::io {
@@ -109,8 +110,9 @@ Hdf5File Hdf5File::open(const std::string& path, Seal seal) {
   auto bytes = keys::whole_file<std::vector<std::byte>>(path, "an HDF5 file that rvelab wrote");
   Hdf5File file(path, take_seal(bytes, path));
   if (!begins_as_hdf5(bytes)) {
-    throw InputError(path +
-                     ": is not an HDF5 file; give a file that rvelab wrote (make one with `rvelab import` or "
+    const keys::FileFormat* format = keys::format_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    throw InputError(path + ": is " + (format != nullptr ? format->what + std::string(", ") : "") +
+                     "not an HDF5 file; give a file that rvelab wrote (make one with `rvelab import` or "
                      "`rvelab run`)");
   }
   if (seal == Seal::required) file.expect_seal();

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/file_format.hpp"
 #include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::io {
@@ -14,9 +15,7 @@ namespace {
 
 constexpr std::string_view gzip_magic{"\x1f\x8b", 2};
 
-[[noreturn]] void refuse_packed(const std::string& path, const std::string& what) {
-  throw InputError(path + ": " + what);
-}
+[[noreturn]] void refuse(const std::string& path, const std::string& what) { throw InputError(path + ": " + what); }
 
 /// zlib's state of one member of a gzip file.
 class Inflation {
@@ -43,7 +42,7 @@ std::size_t unpack_member(const std::string& path, std::string_view packed, std:
   for (int code = Z_OK; code != Z_STREAM_END;) {
     if (state->avail_in == 0) {
       const auto portion = std::min<std::size_t>(packed.size() - taken, 1 << 20);
-      if (portion == 0) refuse_packed(path, "the gzip file ends early; allowed: a whole one; copy or write it again");
+      if (portion == 0) refuse(path, "the gzip file ends early; allowed: a whole one; copy or write it again");
       state->next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + taken));
       state->avail_in = static_cast<uInt>(portion);
       taken += portion;
@@ -53,14 +52,14 @@ std::size_t unpack_member(const std::string& path, std::string_view packed, std:
     code = state.inflate_on();
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR) {
-      refuse_packed(path, "the gzip file is damaged (" + std::string(state->msg != nullptr ? state->msg : "zlib") +
-                              "); allowed: one that gzip -t finds right; copy or write it again");
+      refuse(path, "the gzip file is damaged (" + std::string(state->msg != nullptr ? state->msg : "zlib") +
+                       "); allowed: one that gzip -t finds right; copy or write it again");
     }
     text.append(block.data(), block.size() - state->avail_out);
     if (text.size() > most) {
-      refuse_packed(path, "unpacks to more than " + std::to_string(most) +
-                              " bytes; allowed: 64 MiB and 40 times the packed size, which no text exceeds; unpack it "
-                              "with gunzip if it is right, and give the unpacked file");
+      refuse(path, "unpacks to more than " + std::to_string(most) +
+                       " bytes; allowed: 64 MiB and 40 times the packed size, which no text exceeds; unpack it "
+                       "with gunzip if it is right, and give the unpacked file");
     }
   }
   return taken - state->avail_in;
@@ -71,7 +70,7 @@ std::string unpacked(const std::string& path, std::string_view packed) {
   std::string text;
   while (packed.starts_with(gzip_magic)) packed.remove_prefix(unpack_member(path, packed, most, text));
   if (packed.find_first_not_of('\0') != std::string_view::npos) {  // padding is allowed, as gzip allows it
-    refuse_packed(path, "other bytes follow the gzip data; allowed: nothing behind it; copy or write the file again");
+    refuse(path, "other bytes follow the gzip data; allowed: nothing behind it; copy or write the file again");
   }
   return text;
 }
@@ -80,24 +79,9 @@ std::string unpacked(const std::string& path, std::string_view packed) {
 
 std::string whole_text(const std::string& path, const std::string& wanted) {
   auto text = keys::whole_file<std::string>(path, wanted);
-  if (std::string_view(text).starts_with(gzip_magic)) return unpacked(path, text);
-  struct Packed {
-    std::string_view magic;
-    const char *program, *unpack;
-  };
-  for (const auto& [magic, program, unpack] :
-       {Packed{{"\x28\xb5\x2f\xfd", 4}, "zstd", "unzstd"},
-        Packed{{"\xfd"
-                "7zXZ",
-                5},
-               "xz",
-               "unxz"},
-        Packed{{"BZh", 3}, "bzip2", "bunzip2"}, Packed{{"PK\x03\x04", 4}, "zip", "unzip"}}) {
-    if (!std::string_view(text).starts_with(magic)) continue;
-    refuse_packed(path, std::string("is packed by ") + program +
-                            "; allowed: text, or text packed by gzip; unpack it with " + unpack +
-                            " (a workbook of Excel: save it as CSV)");
-  }
+  if (std::string_view(text).starts_with(gzip_magic)) text = unpacked(path, text);
+  if (const keys::FileFormat* format = keys::format_of(text))
+    refuse(path, std::string("is ") + format->what + "; allowed: text, or text packed by gzip; " + format->remedy);
   return text;
 }
 
