@@ -35,7 +35,7 @@ def native_files():
     build = build_folder()
     found = [(f"lib/{name}", build / "lib" / name) for name in ("librvelab.so.1", "librvelab-h5.so.1")]
     found += [(program, build / program) for program in PROGRAMS]
-    for folder, ending in (("share/rvelab/protocols", "*.toml"), ("share/rvelab/plot", "*.py")):
+    for folder, ending in (("share/rvelab/protocols", "*.toml"), ("share/rvelab/protocols", "*.csv"), ("share/rvelab/plot", "*.py")):
         files = sorted((build / folder).rglob(ending))
         found += [(f"{folder}/{file.relative_to(build / folder)}", file) for file in files]
         if not files:
