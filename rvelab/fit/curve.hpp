@@ -34,6 +34,7 @@ struct Curve {
   std::string abscissa;             ///< "strain", "p" or "axial_stress"
   std::vector<double> x, y, error;  ///< SI; at most `most_points` rows of the measured range
   Features features{};              ///< of all its rows
+  std::string file{};               ///< path, for messages
 };
 
 inline constexpr std::size_t most_points = 12;
