@@ -235,6 +235,23 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
   return curves;
 }
 
+/// Puts the records of earlier stages in front that rise straight to the last: an oedometer test that measures its
+/// stiffness first has left its pressure when its last stage begins. Strain goes on from stage to stage.
+void begin_earlier(const records::TestResult& test, int dimension, const Curve& like, std::vector<double>& x,
+                   std::vector<double>& y) {
+  if (x.empty()) return;
+  const auto& all = test.records;
+  double behind = 0;  // strain that is to come up to the last stage
+  for (std::size_t k = all.size() - calibrate::last_stage(test).size(); k > 0; --k) {
+    const records::Record& record = all[k - 1];
+    const double at = value_of(record, like.abscissa, dimension);
+    if (!(at < x.front())) return;
+    if (record.stage != all[k].stage) behind += std::abs(record.strain);
+    x.insert(x.begin(), at);
+    y.insert(y.begin(), value_of(record, like.name, dimension) - (like.name == "strain" ? behind : 0));
+  }
+}
+
 /// Scatter of repeated tests: part of each value, part of the largest, and a constant, added as squares.
 struct Scatter {
   double of_value = 0, of_largest = 0, constant = 0;
@@ -282,6 +299,7 @@ TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& 
       y.push_back(value_of(record, like.name, dimension));
     }
   }
+  if (in_logarithm(like.abscissa)) begin_earlier(test, dimension, like, x, y);
   TestCurve found;
   for (const double at : like.x)
     found.y.push_back(x.size() < 2 ? nan : interpolated(x, y, at, in_logarithm(like.abscissa)));

@@ -69,7 +69,7 @@ struct TestCurve {
   std::vector<double> y;  ///< at the abscissae of the measured one; NaN beyond its end
   Features features;      ///< up to the last of them
 };
-/// Only the rising part of the abscissa counts.
+/// Only the rising part of the abscissa counts; a stress may rise from stages before the last.
 TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& like);
 
 /// The points as targets of one curve; `test`: the name that begins theirs, "" for none.

@@ -23,7 +23,7 @@ struct Read {
   std::vector<fit::Curve> curves;
   std::string said;
 };
-Read read(const std::string& text, const fit::Selection& selection = {}) {
+Read curves_of(const std::string& text, const fit::Selection& selection = {}) {
   Read found;
   found.curves =
       fit::parsed_curves(text, "d.csv", selection, [&](const std::string& what) { found.said += what + "\n"; });
@@ -33,7 +33,7 @@ Read read(const std::string& text, const fit::Selection& selection = {}) {
 /// The clean triaxial test, to a part of its largest strain and deviator.
 Read expect_triaxial(const std::string& text, const fit::Selection& selection = {}, double tolerance = 1e-12) {
   CAPTURE(text);
-  Read found = read(text, selection);
+  Read found = curves_of(text, selection);
   INFO(found.said);
   REQUIRE(found.curves.size() == 1);
   const auto& [x, y] = std::tie(found.curves[0].x, found.curves[0].y);
@@ -94,7 +94,7 @@ TEST_CASE("Titles above the header, units below it, remarks and time stamps are 
   const Read units = expect_triaxial("time,eps_a,q\ns,[%],(kPa)\n" + rows + "End of test,,\n",
                                      {{"axial_strain=eps_a", "deviator=q"}, {}, {}});
   CHECK_THAT(units.said, Contains("left out: line 12"));
-  CHECK(read("Sample 3,\n,\neps_a,q\n%,kPa\n0,0\n1,50\n").curves[0].x[1] == 0.01);
+  CHECK(curves_of("Sample 3,\n,\neps_a,q\n%,kPa\n0,0\n1,50\n").curves[0].x[1] == 0.01);
   CHECK_THAT(refused("eps_a,q\nmm,kPa\n0,0\n1,50\n"), Contains("d.csv:1: the first column is \"eps_a [mm]\""));
   CHECK_THAT(refused("A,B\n0,0\n1,50\n", by_name),
              Contains("d.csv:1: the column Axial Strain (%) is missing; the header is A, B"));
@@ -122,12 +122,12 @@ TEST_CASE("Tables of machines under Windows are read: UTF-16, Latin-1, tabs, dec
 }
 
 TEST_CASE("Groups of digits are read where a cell tells them, and refused where it does not") {
-  const auto curve = read("eps_a [%];q [kPa]\n0,5;980,0\n1;1.010,5\n2;1.120\n").curves[0];
+  const auto curve = curves_of("eps_a [%];q [kPa]\n0,5;980,0\n1;1.010,5\n2;1.120\n").curves[0];
   CHECK(curve.y == std::vector<double>{980e3, 1010.5e3, 1120e3});
   CHECK_THAT(refused("eps_a [%];q [kPa]\n0,5;980\n1;1,010\n2;1,120\n"),
              Contains("d.csv:3: column q [kPa] = 1,010 may be 1.01, with a decimal mark, or 1010"));
   CHECK_THAT(refused("eps_a [%];q [kPa]\n0,5;980\n1;1.010\n2;1.120\n"), Contains("q [kPa] = 1.010 may be"));
-  CHECK(read("eps_a [%];q [kPa]\n0,5;1,250\n1;1,500\n").curves[0].y[1] == 1500);
+  CHECK(curves_of("eps_a [%];q [kPa]\n0,5;1,250\n1;1,500\n").curves[0].y[1] == 1500);
 }
 
 TEST_CASE("Readings within a sensor's step are joined, and their lines are said") {
@@ -137,21 +137,21 @@ TEST_CASE("Readings within a sensor's step are joined, and their lines are said"
       {}, 1e-9);
   CHECK_THAT(noise.said, Contains("4 rows in which eps_a [%] changes by no more than a sensor's step are joined to 2, "
                                   "lines 6 to 7, 9 to 10"));
-  const Read equal = read("eps_a [%];q [kPa]\n0.01;3\n0.01;6\n0.02;9\n0.05;25\n");
+  const Read equal = curves_of("eps_a [%];q [kPa]\n0.01;3\n0.01;6\n0.02;9\n0.05;25\n");
   CHECK(equal.curves[0].y == std::vector<double>{4500, 9000, 25000});
-  CHECK(read("eps_a [%];q [kPa]\n0;0\n0.1;40\n").said.empty());
+  CHECK(curves_of("eps_a [%];q [kPa]\n0;0\n0.1;40\n").said.empty());
   // Readings of a noisy sensor, ten a second: the curve is found to a hundredth.
   std::string text = "eps_a [%],q [kPa]\n";
   for (int k = 0; k < 600; ++k) {
     const double strain = 0.01 * k, noise_of_sensor = 0.013 * std::sin(12.9898 * k) * std::cos(78.233 * k);
     text += std::to_string(strain + noise_of_sensor) + "," + std::to_string(165 * (1 - std::exp(-strain))) + "\n";
   }
-  const fit::Curve many = read(text).curves[0];
+  const fit::Curve many = curves_of(text).curves[0];
   REQUIRE(many.x.size() == fit::most_points);
   for (std::size_t k = 0; k < many.x.size(); ++k)
     CHECK(many.y[k] == Approx(165e3 * (1 - std::exp(-100 * many.x[k]))).margin(1.65e3));
   // A load cell that falls by a step as the oedometer goes on, and holds a load with noise: the last strain counts.
-  const Read oedometer = read(
+  const Read oedometer = curves_of(
       "sigma_v [kPa],eps_a [%]\n0,0\n5,0\n8,0.05\n11,0.08\n10.7,0.11\n20,0.2\n40,0.3\n40.2,0.34\n39.9,0.36\n40.1,0.37\n"
       "80,0.5\n");
   CHECK_THAT(oedometer.said, Contains("d.csv: left out before contact or load, line 2") && Contains("5 to 6, 8 to 11"));
@@ -169,8 +169,8 @@ TEST_CASE("Seating readings are left out, and strain counts from contact") {
   CHECK_THAT(seated.said, Contains("left out before contact or load, lines 2 to 3") &&
                               Contains("strain counts from d.csv:4: column eps_a [%] = 0.3"));
   const std::string offset = "eps_a [%],q [kPa],eps_v [%]\n0.3,0,0.02\n0.4,40,0.03\n1.3,140,0.05\n";
-  CHECK(read(offset).curves[1].y[2] == Approx(0.0003));
-  CHECK(read(offset, {{}, 0.3, {}}).curves[0].x[0] == Approx(0.003));  // who names the begin counts himself
+  CHECK(curves_of(offset).curves[1].y[2] == Approx(0.0003));
+  CHECK(curves_of(offset, {{}, 0.3, {}}).curves[0].x[0] == Approx(0.003));  // who names the begin counts himself
 }
 
 TEST_CASE("Stops, unloading in between and the end of the machine are left out, and noise is told from them") {
@@ -183,7 +183,7 @@ TEST_CASE("Stops, unloading in between and the end of the machine are left out, 
   CHECK_THAT(refused("eps_a [%],q [kPa]\n0,0\n1,50\n2,80\n3,90\n1,95\n2,99\n4,100\n"),
              Contains("d.csv:6: column eps_a [%] = 1 does not rise") && Contains("set back"));
   const fit::Curve loop =
-      read("sigma_v [kPa],eps_a [%]\n10,0\n20,0.2\n40,0.4\n20,0.38\n10,0.3\n40,0.42\n80,0.6\n").curves[0];
+      curves_of("sigma_v [kPa],eps_a [%]\n10,0\n20,0.2\n40,0.4\n20,0.38\n10,0.3\n40,0.42\n80,0.6\n").curves[0];
   CHECK(loop.x == std::vector<double>{10e3, 20e3, 40e3, 80e3});
   CHECK_THAT(refused("eps_a [%],q [kPa]\n0,0\n-1,50\n-2,80\n"), Contains("change the sign"));
 }
@@ -191,9 +191,9 @@ TEST_CASE("Stops, unloading in between and the end of the machine are left out, 
 TEST_CASE("A test beside a longer one ends where its cells end, and a hole in it is told by line and column") {
   const std::string two = "A eps;A q;B eps;B q\n0,02;9;0,03;11\n0,05;25;0,06;27\n0,1;40;0,12;46\n1,0;95;;\n1,5;90;;\n";
   const fit::Selection second{{"axial_strain_percent=B eps", "deviator_kPa=B q"}, {}, {}};
-  CHECK(read(two, second).curves[0].x.size() == 3);
-  CHECK(read(two, {{"axial_strain_percent=A eps", "deviator_kPa=B q"}, {}, {}}).curves[0].x.size() == 3);
-  CHECK(read(two, {{"axial_strain_percent=A eps", "deviator_kPa=A q"}, {}, {}}).curves[0].x.size() == 5);
+  CHECK(curves_of(two, second).curves[0].x.size() == 3);
+  CHECK(curves_of(two, {{"axial_strain_percent=A eps", "deviator_kPa=B q"}, {}, {}}).curves[0].x.size() == 3);
+  CHECK(curves_of(two, {{"axial_strain_percent=A eps", "deviator_kPa=A q"}, {}, {}}).curves[0].x.size() == 5);
   CHECK_THAT(refused("A eps;A q;B eps;B q\n1;9;1;11\n2;25;2;\n3;40;3;46\n", second),
              Contains("d.csv:3: column B q = ") && Contains("is empty"));
   CHECK_THAT(refused("A eps;A q;B eps;B q\n1;9;1;11\n2;25;;\n3;40;3;46\n", second), Contains("d.csv:3: column B eps"));
@@ -210,7 +210,7 @@ TEST_CASE("Rows outside the range are not judged") {
       "6.5,1\n9999,oops\n??,3\n1,2,3,4\n",
       {{}, 0.0, 6.0});
   CHECK_THAT(refused(text, {{}, -6.0, 6.0}), Contains("d.csv:4: column eps_a [%] = bad") || Contains("q [kPa] = x"));
-  const Read glitch = read("eps_a [%],q [kPa]\n0,0\n1,40\n999,75\n2,75\n3,110\n");
+  const Read glitch = curves_of("eps_a [%],q [kPa]\n0,0\n1,40\n999,75\n2,75\n3,110\n");
   CHECK(glitch.curves[0].x.size() == 4);
   CHECK_THAT(glitch.said, Contains("stands out for one row, line 4"));
 }

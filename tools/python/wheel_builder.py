@@ -3,7 +3,8 @@
 
 It is the backend that pyproject.toml names, so `pip wheel --no-build-isolation --no-deps tools/python` and `pip install`
 work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the programs, the protocols with
-the curves that fits compare with, and the scripts of the figures. RVELAB_BUILD names another build, or the prefix of an installation. The same build gives the same bytes.
+the curves that fits compare with, and the scripts of the figures. RVELAB_BUILD names another build, or the prefix of an
+installation. The same build gives the same bytes.
 Its name says what it needs: manylinux_2_N of a portable build (tools/package), linux where it counts on libraries of this
 machine.
 """
