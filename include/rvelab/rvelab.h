@@ -118,7 +118,7 @@ typedef void (*rvelab_run_tasks)(void* host, rvelab_task task, void* work, int64
 #define RVELAB_TRIAL_KEEP 0      /* a pending trial is kept beside the committed state: commit costs nothing */
 #define RVELAB_TRIAL_RECOMPUTE 1 /* only the committed state is kept: commit makes the trial again */
 
-/* Ids and tokens of a pool begin with numbers drawn at random. With this flag, since 1.3, they count from the lowest:
+/* Ids and tokens of a pool begin with numbers drawn at random. With this flag, since 1.4, they count from the lowest:
  * the same calls write pool files of the same bytes, but ids of another process, or of a pool that is gone, may be
  * taken for those of this one. For hosts whose ids stay where they were made. */
 #define RVELAB_POOL_COUNTED_IDS 2

@@ -108,7 +108,7 @@ void add_tests_of_protocol(FitSetup& setup, const FitArguments& arguments) {
   for (const std::string& word : arguments.curves) {
     const NamedCurve named = named_curve(word);
     auto& curves = test_at(named.pressure).curves;
-    for (fit::Curve& curve : fit::read_curves(named.path, {arguments.columns, {}, {}}))
+    for (fit::Curve& curve : fit::read_curves(named.path, {arguments.columns, {}, {}}, tell))
       curves.push_back(std::move(curve));
   }
   if (arguments.curves.empty() && !arguments.columns.empty())
@@ -182,7 +182,7 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
                       .curves = {},
                       .predict = measured.predict};
     if (!measured.curve.empty())
-      test.curves = fit::read_curves(from_folder_of(path, measured.curve), measured.selection);
+      test.curves = fit::read_curves(from_folder_of(path, measured.curve), measured.selection, tell);
     setup.tests.push_back(std::move(test));
   }
   if (std::all_of(setup.tests.begin(), setup.tests.end(), [](const ComparedTest& test) { return test.predict; }))

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "rvelab/cli/doubts.hpp"
+#include "rvelab/cli/fit_reach.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/error.hpp"
@@ -208,6 +209,7 @@ void expect_runnable(const FitSetup& setup) {
                          " is a key of a recipe; allowed: with --recipe; name one, or vary a key of the "
                          "protocol");
       const protocol::Protocol protocol = protocol_of(setup, compared, values);
+      expect_reach(compared, protocol);
       if (!setup.recipe.empty()) tell_of_units(setup.recipe, pack::read_recipe(setup.recipe, of_packing).doubts);
       tell_of_units(compared.protocol, protocol.doubts);
       for (const Specimen& specimen : setup.specimens)

@@ -61,7 +61,7 @@ struct FitResult {
 double measure_of(const FitResult& result, std::size_t made, const std::string& measure);
 
 /// InputError for a key that neither protocol nor recipe takes, at both ends of every range, and for a specimen that
-/// does not go with the protocol.
+/// does not go with the protocol; and for a curve that leaves its test (fit_reach.hpp).
 void expect_runnable(const FitSetup& setup);
 
 /// Makes them, `threads` sets at a time; those whose file is in `folder` are read. Without a folder nothing is kept.

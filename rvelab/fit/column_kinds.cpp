@@ -18,14 +18,19 @@ const std::map<std::string, std::string>& quantities() {
                                                       {"eps1", "strain"},
                                                       {"epsilon_a", "strain"},
                                                       {"epsilon_1", "strain"},
+                                                      {"\xce\xb5_a", "strain"},
+                                                      {"\xce\xb5_1", "strain"},
                                                       {"axial_stress", "axial_stress"},
                                                       {"vertical_stress", "axial_stress"},
                                                       {"sigma_1", "axial_stress"},
                                                       {"sigma_a", "axial_stress"},
                                                       {"sigma_v", "axial_stress"},
+                                                      {"effective_vertical_stress", "axial_stress"},
+                                                      {"vertical_effective_stress", "axial_stress"},
                                                       {"p", "p"},
                                                       {"p'", "p"},
                                                       {"mean_stress", "p"},
+                                                      {"mean_effective_stress", "p"},
                                                       {"q", "deviator"},
                                                       {"deviator", "deviator"},
                                                       {"deviator_stress", "deviator"},
@@ -37,15 +42,20 @@ const std::map<std::string, std::string>& quantities() {
                                                       {"eps_v", "volumetric_strain"},
                                                       {"epsilon_v", "volumetric_strain"},
                                                       {"eps_vol", "volumetric_strain"},
+                                                      {"\xce\xb5_v", "volumetric_strain"},
+                                                      {"volume_strain", "volumetric_strain"},
                                                       {"void_ratio", "void_ratio"},
                                                       {"e", "void_ratio"}};
   return all;
 }
 
+bool is_of_stress(const std::string& unit) { return unit.ends_with("pa") || unit.starts_with("kn/m"); }
+
 /// Factor of a unit to SI; none: no unit.
 std::optional<double> factor_of(const std::string& unit) {
-  static const std::map<std::string, double> all{{"pa", 1},         {"kpa", 1e3}, {"mpa", 1e6}, {"kn/m2", 1e3},
-                                                 {"percent", 0.01}, {"%", 0.01},  {"-", 1},     {"1", 1}};
+  static const std::map<std::string, double> all{
+      {"pa", 1},         {"kpa", 1e3}, {"mpa", 1e6}, {"kn/m2", 1e3}, {"kn/m\xc2\xb2", 1e3},
+      {"percent", 0.01}, {"%", 0.01},  {"-", 1},     {"1", 1}};
   const auto found = all.find(unit);
   return found == all.end() ? std::nullopt : std::optional(found->second);
 }
@@ -81,14 +91,14 @@ NameAndUnit parted(const std::string& text) {
 
 }  // namespace
 
-std::optional<ColumnKind> column_kind(const std::string& name) {
-  const auto [own, unit] = parted(name);
+std::optional<ColumnKind> column_kind(const std::string& name, const std::string& below) {
+  auto [own, unit] = parted(name);
+  if (unit.empty() && !below.empty()) unit = parted("x [" + below + "]").unit;
   const auto found = quantities().find(own);
   if (found == quantities().end()) return std::nullopt;
   ColumnKind kind{found->second};
   const auto factor = factor_of(unit);
-  const bool of_stress = factor && unit.ends_with("pa");
-  if (!unit.empty() && (!factor || (of_stress || unit == "kn/m2") != kind.is_stress())) return std::nullopt;
+  if (!unit.empty() && (!factor || is_of_stress(unit) != kind.is_stress())) return std::nullopt;
   kind.factor = factor.value_or(kind.is_stress() ? 0 : 1);
   return kind;
 }

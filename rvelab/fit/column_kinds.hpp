@@ -14,8 +14,9 @@ struct ColumnKind {
 };
 
 /// By name and unit, "deviator_kPa", "q [kPa]", "eps_a (%)", "axial_strain_percent"; capitals do not matter, and a
-/// strain without a unit is a number. None: not known.
-std::optional<ColumnKind> column_kind(const std::string& name);
+/// strain without a unit is a number. `below`: the unit of a name that has none itself, as a row below the header says
+/// it. None: not known.
+std::optional<ColumnKind> column_kind(const std::string& name, const std::string& below = "");
 
 /// The names that messages offer, for an abscissa or for a curve over it.
 std::string known_columns(bool abscissa);

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/fit/column_kinds.hpp"
-#include "rvelab/io/import/csv_table.hpp"
-#include "rvelab/io/utf8.hpp"
-#include "rvelab/keys/shortened.hpp"
+#include "rvelab/fit/chosen_columns.hpp"
+#include "rvelab/fit/loading.hpp"
+#include "rvelab/io/import/text.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::fit {
@@ -21,14 +19,14 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-std::string quoted(const std::string& name) { return "\"" + keys::shortened(io::printable(name)) + "\""; }
-
 bool in_logarithm(const std::string& abscissa) { return abscissa != "strain"; }
 
-/// Linear between the points of rising x, on the logarithm of a pressure.
+/// Linear between the points of rising x, on the logarithm of a pressure. A test begins at its pressure within a
+/// tolerance: a pressure that is missed by less is taken as its first.
 double interpolated(const std::vector<double>& x, const std::vector<double>& y, double at, bool logarithm) {
-  const double slack = 1e-9 * std::abs(at);
-  if (x.empty() || at < x.front() - slack || at > x.back() + slack) return nan;
+  const double slack = 1e-9 * std::abs(at), slack_before = logarithm ? 0.01 * at : slack;
+  if (x.empty() || at < x.front() - slack_before || at > x.back() + slack) return nan;
+  if (logarithm) at = std::max(at, x.front());
   const auto above = std::lower_bound(x.begin() + 1, x.end() - 1, at);
   const auto k = std::size_t(above - x.begin());
   const double part =
@@ -86,151 +84,131 @@ Features features_of(const std::vector<double>& x, const std::vector<double>& y,
   return found;
 }
 
-/// A column that is read.
-struct Chosen {
-  std::size_t column = 0;
-  ColumnKind kind;
-};
-
-/// Each column of the table, as its name says; those of errors are left to their curves.
-std::vector<Chosen> all_columns(const io::CsvTable& table) {
-  const auto& header = table.columns();
-  std::vector<Chosen> chosen;
-  for (std::size_t k = 0; k < header.size(); ++k) {
-    const std::string& name = header[k];
-    const std::string of = name.ends_with("_error") ? name.substr(0, name.size() - 6) : "";
-    if (!of.empty() && std::find(header.begin() + 1, header.end(), of) == header.end())
-      throw InputError(table.path() + ": the column " + quoted(name) +
-                       " is the error of no column; allowed: that of a "
-                       "curve beside it; name it as its curve, with _error behind");
-    if (!of.empty() && k > 0) continue;
-    const auto kind = column_kind(name);
-    if (k == 0 && !(kind && may_be_abscissa(*kind)))
-      throw InputError(table.path() + ": the first column is " + quoted(name) + "; allowed: " + known_columns(true) +
-                       "; name the column with its unit, or choose columns (--column)");
-    if (!kind || !may_be_curve(*kind))
-      if (k > 0)
-        throw InputError(table.path() + ": the column " + quoted(name) +
-                         " is not known; allowed: " + known_columns(false) +
-                         ", and each with _error behind it; name it with its unit, or choose the columns to read "
-                         "(--column)");
-    chosen.push_back({k, *kind});
-  }
-  return chosen;
+/// Rows of the table up to the last in which a curve has a cell: beside a longer test, or an abscissa that goes on.
+std::size_t rows_of_test(const MeasuredTable& table, const std::vector<Chosen>& columns) {
+  std::size_t end = 0;
+  for (std::size_t k = 1; k < columns.size(); ++k)
+    for (std::size_t row = table.rows(); row > end; --row)
+      if (!table.is_empty(row - 1, columns[k].column)) end = row;
+  const bool is_cut = end > 0 && end + 1 == table.rows() && !table.is_empty(end, columns[0].column) &&
+                      table.ends_before(end, columns[1].column);
+  return is_cut ? end + 1 : end;  // a file that ends within a line
 }
 
-/// Those that were asked for.
-std::vector<Chosen> selected(const io::CsvTable& table, const std::vector<std::string>& columns) {
-  std::vector<Chosen> chosen;
-  for (const std::string& text : columns) {
-    const auto equals = text.find('=');
-    const std::string kind_name = text.substr(0, equals);
-    const std::string name = equals == std::string::npos ? text : text.substr(equals + 1);
-    const auto kind = column_kind(kind_name);
-    const bool first = chosen.empty();
-    if (!kind || !(first ? may_be_abscissa(*kind) : may_be_curve(*kind)))
-      throw InputError(table.path() + ": the column asked for, " + quoted(text) + ", is no " +
-                       (first ? "abscissa; allowed first: " : "curve; allowed: ") + known_columns(first) +
-                       "; write KIND, or KIND=NAME for a column of another name");
-    chosen.push_back({table.column({name}), *kind});
+Readings readings_of(const MeasuredTable& table, const std::vector<Chosen>& columns, const Selection& selection) {
+  Readings readings{{}, {}, columns[0].kind.quantity == "strain", selection.from, selection.to};
+  const std::size_t rows = rows_of_test(table, columns);
+  const auto deviator = std::find_if(columns.begin() + 1, columns.end(), [](const Chosen& each) {
+    return each.kind.quantity == "deviator" || each.kind.quantity == "q_over_p";
+  });
+  for (std::size_t row = 0; row < rows; ++row) {
+    readings.x.push_back(table.number_or_nan(row, columns[0].column));
+    if (readings.is_strain && deviator != columns.end())
+      readings.deviator.push_back(table.number_or_nan(row, deviator->column));
   }
-  return chosen;
+  return readings;
 }
 
-/// InputError for a stress without a unit, and for a quantity twice.
-void expect_units(const io::CsvTable& table, const std::vector<Chosen>& columns) {
-  const auto& header = table.columns();
-  std::map<std::string, std::string> named;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const auto& [column, kind] = columns[k];
-    if (kind.factor == 0)
-      throw InputError(table.path() + ": the column " + quoted(header[column]) +
-                       " has no unit; allowed: _Pa, _kPa or _MPa behind it, or [kPa]; write it, or name the column "
-                       "as --column deviator_kPa=q does");
-    if (k == 0) continue;
-    if (const auto [first, fresh] = named.emplace(kind.quantity, header[column]); !fresh)
-      throw InputError(table.path() + ": the columns " + first->second + " and " + header[column] +
-                       " are one quantity twice; allowed: one column for each; remove one");
+/// InputError for a cell within the loading that is no number, and for too few rows.
+void expect_loading(const MeasuredTable& table, const Readings& readings, const Loading& loading, std::size_t column) {
+  const auto& x = readings.x;
+  const auto& points = loading.points;
+  const bool enough = points.size() > 1;
+  for (std::size_t row = enough ? points.front().rows.front() : 0;
+       row < (enough ? points.back().rows.back() : x.size()); ++row)
+    if (!std::isfinite(x[row]) && (enough || !table.is_empty(row, column))) table.number(row, column);
+  if (loading.backwards)
+    throw InputError(table.location(*loading.backwards, column) +
+                     " does not rise, and the deviator does not fall as in unloading; allowed: a strain that rises but "
+                     "for its sensor's step; where the sensor was set back add what it had, or sort the rows");
+  if (enough) return;
+  double first = nan, largest = nan;
+  for (const double value : x) {
+    if (std::isnan(first)) first = value;
+    largest = std::fmax(largest, value);
   }
+  throw InputError(table.path() + ": " + std::to_string(points.size()) +
+                   " rows are left between from and to, before the unloading, where " + table.names()[column] +
+                   " rises; allowed: at least 2; it reaches from " + in_words(first) + " to " + in_words(largest) +
+                   (x.size() > 1 && largest == first
+                        ? "; compression is positive: if it falls from the start, change the sign of the column"
+                        : ""));
 }
 
-/// Numbers of a column, in the units of the file.
-std::vector<double> values_of(const io::CsvTable& table, std::size_t column) {
+void tell_of(const MeasuredTable& table, const Loading& loading, std::size_t column, const Tell& tell) {
+  if (!tell) return;
+  const std::string& name = table.names()[column];
+  const auto say = [&](const std::string& what) { tell(table.path() + ": " + what); };
+  const auto rows = [&](const std::vector<std::size_t>& list, const std::string& what) {
+    if (!list.empty()) say(what + ", " + table.lines_in_words(list));
+  };
+  for (const std::string& note : table.notes()) say(note);
+  const auto joined = std::count_if(loading.points.begin(), loading.points.end(),
+                                    [](const auto& each) { return each.rows.size() > 1; });
+  rows(loading.before, "left out before contact or load");
+  if (loading.counts_from_contact)
+    say("strain counts from " + table.location(loading.contact, column) + ", where the deviator begins to rise");
+  rows(loading.joined, std::to_string(loading.joined.size()) + " rows in which " + name +
+                           " changes by no more than a sensor's step are joined to " + std::to_string(joined));
+  rows(loading.glitches, "left out, since " + name + " stands out for one row");
+  rows(loading.unloading, "left out, since the machine stood still or unloaded");
+  rows(loading.after, "left out as the end of the test, after the largest " + name);
+}
+
+/// The values of a column at the points, in SI.
+std::vector<double> values_at(const MeasuredTable& table, const Readings& readings, const Loading& loading,
+                              std::size_t column, double factor) {
   std::vector<double> values;
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.number(row, column));
+  for (const LoadingPoint& point : loading.points) {
+    const auto& rows = point.rows;
+    const auto is_held = [&] {
+      return std::all_of(rows.begin(), rows.end(),
+                         [&](std::size_t row) { return readings.x[row] == readings.x[rows.front()]; });
+    };
+    const bool last = !readings.is_strain && (rows.size() > 2 || is_held());
+    double value = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double own = table.number(rows[k], column);
+      value = last ? own : value + (own - value) / double(k + 1);
+    }
+    values.push_back(factor * value);
+  }
   return values;
 }
 
-/// Rows between the ends that were asked for, without unloading; of a stress that is held, the last.
-std::vector<std::size_t> rows_of(const io::CsvTable& table, const std::vector<double>& x, const Selection& selection,
-                                 const Chosen& abscissa) {
-  const auto& path = table.path();
-  if (x.size() < 2) throw InputError(path + ": " + std::to_string(x.size()) + " rows; allowed: at least 2");
-  const bool may_be_held = abscissa.kind.is_stress();
-  const auto largest = std::size_t(std::max_element(x.begin(), x.end()) - x.begin());
-  for (std::size_t k = 1; k < x.size(); ++k) {
-    if (k > largest && may_be_held) break;  // unloading, and loading again
-    const double step = k <= largest ? x[k] - x[k - 1] : x[k - 1] - x[k];
-    if (!(step > 0 || (step == 0 && may_be_held)))
-      throw InputError(table.location(k, abscissa.column) +
-                       " does not rise; allowed: rising values; sort the rows, or leave unloading out");
-  }
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < x.size() && x[k] >= x[k == 0 ? 0 : k - 1]; ++k) {
-    if (x[k] < selection.from.value_or(x[k]) || x[k] > selection.to.value_or(x[k])) continue;
-    if (!rows.empty() && x[rows.back()] == x[k]) rows.pop_back();
-    rows.push_back(k);
-  }
-  if (rows.size() < 2)
-    throw InputError(path + ": " + std::to_string(rows.size()) +
-                     " rows are left between from and to, before the unloading; allowed: at least 2; they reach from " +
-                     in_words(x.front()) + " to " + in_words(x[largest]));
-  return rows;
-}
-
-/// The part of a column, in SI.
-std::vector<double> part_of(const std::vector<double>& values, const std::vector<std::size_t>& rows, double factor) {
-  std::vector<double> part;
-  for (const std::size_t row : rows) part.push_back(factor * values[row]);
-  return part;
-}
-
-void expect_finite(const io::CsvTable& table, const Curve& curve, std::size_t column) {
+void expect_finite(const MeasuredTable& table, const Curve& curve, std::size_t column) {
   for (std::size_t k = 0; k < curve.x.size(); ++k)
     if (!std::isfinite(curve.x[k]) || (in_logarithm(curve.abscissa) && !std::isnormal(curve.x[k])) ||
         !std::isfinite(curve.y[k]) || !std::isfinite(curve.error[k]))
-      throw InputError(table.path() + ": " + table.columns()[column] + " has no finite value at " + curve.abscissa +
+      throw InputError(table.path() + ": " + table.names()[column] + " has no finite value at " + curve.abscissa +
                        " = " + in_words(curve.x[k]) +
                        "; allowed: numbers of a test, not those at the ends of what a computer holds; correct them");
 }
 
-/// A strain over a stress counts from its first point.
-void count_from_first(const std::string& quantity, std::vector<double>& y) {
-  if (quantity != "strain" || y.empty()) return;
+void count_from_first(std::vector<double>& y) {
+  if (y.empty()) return;
   const double first = y.front();
   for (double& value : y) value -= first;
 }
 
-std::vector<Curve> curves_in(const io::CsvTable& table, const Selection& selection) {
-  const auto& header = table.columns();
-  const auto& path = table.path();
-  const std::vector<Chosen> columns =
-      selection.columns.empty() ? all_columns(table) : selected(table, selection.columns);
-  expect_units(table, columns);
-  const std::vector<double> whole = values_of(table, columns[0].column);
-  const std::vector<std::size_t> rows = rows_of(table, whole, selection, columns[0]);
+std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, const Tell& tell) {
+  const std::vector<Chosen> columns = chosen_columns(table, selection.columns);
   const ColumnKind& abscissa = columns[0].kind;
-  const std::vector<double> x = part_of(whole, rows, abscissa.factor);
+  const Readings readings = readings_of(table, columns, selection);
+  const Loading loading = loading_of(readings);
+  expect_loading(table, readings, loading, columns[0].column);
+  const double origin = loading.counts_from_contact ? loading.points.front().x : 0;
+  std::vector<double> x;
+  for (const LoadingPoint& point : loading.points) x.push_back(abscissa.factor * (point.x - origin));
   if (in_logarithm(abscissa.quantity) && !(x.front() > 0))
-    throw InputError(path + ": " + header[columns[0].column] +
+    throw InputError(table.location(loading.points.front().rows.front(), columns[0].column) +
                      " is not above 0; allowed: > 0; leave the row out, or begin above it (from)");
-  if (columns.size() < 2)
-    throw InputError(path + ": there is no column beside " + header[columns[0].column] +
-                     "; allowed: " + known_columns(false));
   std::vector<std::vector<double>> values;
   for (std::size_t k = 1; k < columns.size(); ++k) {
-    values.push_back(part_of(values_of(table, columns[k].column), rows, columns[k].kind.factor));
-    count_from_first(columns[k].kind.quantity, values.back());
+    values.push_back(values_at(table, readings, loading, columns[k].column, columns[k].kind.factor));
+    const std::string& quantity = columns[k].kind.quantity;
+    if (quantity == "strain" || (quantity == "volumetric_strain" && loading.counts_from_contact))
+      count_from_first(values.back());
   }
   std::vector<double> spaced = x;
   if (in_logarithm(abscissa.quantity))
@@ -241,11 +219,10 @@ std::vector<Curve> curves_in(const io::CsvTable& table, const Selection& selecti
   std::vector<Curve> curves;
   for (std::size_t k = 1; k < columns.size(); ++k) {
     const auto& y = values[k - 1];
-    const auto own_error = std::find(header.begin(), header.end(), header[columns[k].column] + "_error");
     std::vector<double> error(y.size(), 0);
-    if (own_error != header.end())
-      error = part_of(values_of(table, std::size_t(own_error - header.begin())), rows, columns[k].kind.factor);
-    Curve curve{columns[k].kind.quantity, abscissa.quantity, {}, {}, {}, features_of(x, y, abscissa.quantity)};
+    if (columns[k].error) error = values_at(table, readings, loading, *columns[k].error, columns[k].kind.factor);
+    Curve curve{
+        columns[k].kind.quantity, abscissa.quantity, {}, {}, {}, features_of(x, y, abscissa.quantity), table.path()};
     for (const std::size_t row : chosen) {
       curve.x.push_back(x[row]);
       curve.y.push_back(y[row]);
@@ -254,7 +231,25 @@ std::vector<Curve> curves_in(const io::CsvTable& table, const Selection& selecti
     expect_finite(table, curve, columns[k].column);
     curves.push_back(std::move(curve));
   }
+  tell_of(table, loading, columns[0].column, tell);
   return curves;
+}
+
+/// Puts the records of earlier stages in front that rise straight to the last: an oedometer test that measures its
+/// stiffness first has left its pressure when its last stage begins. Strain goes on from stage to stage.
+void begin_earlier(const records::TestResult& test, int dimension, const Curve& like, std::vector<double>& x,
+                   std::vector<double>& y) {
+  if (x.empty()) return;
+  const auto& all = test.records;
+  double behind = 0;  // strain that is to come up to the last stage
+  for (std::size_t k = all.size() - calibrate::last_stage(test).size(); k > 0; --k) {
+    const records::Record& record = all[k - 1];
+    const double at = value_of(record, like.abscissa, dimension);
+    if (!(at < x.front())) return;
+    if (record.stage != all[k].stage) behind += std::abs(record.strain);
+    x.insert(x.begin(), at);
+    y.insert(y.begin(), value_of(record, like.name, dimension) - (like.name == "strain" ? behind : 0));
+  }
 }
 
 /// Scatter of repeated tests: part of each value, part of the largest, and a constant, added as squares.
@@ -269,12 +264,14 @@ Scatter scatter_of(const std::string& quantity) {
 
 }  // namespace
 
-std::vector<Curve> parsed_curves(const std::string& text, const std::string& path, const Selection& selection) {
-  return curves_in(io::CsvTable(path, text), selection);
+std::vector<Curve> parsed_curves(const std::string& text, const std::string& path, const Selection& selection,
+                                 const Tell& tell) {
+  MeasuredTable table(path, text, known_header(selection.columns));
+  return curves_in(table, selection, tell);
 }
 
-std::vector<Curve> read_curves(const std::string& path, const Selection& selection) {
-  return parsed_curves(io::whole_text(path, "a CSV file with named columns"), path, selection);
+std::vector<Curve> read_curves(const std::string& path, const Selection& selection, const Tell& tell) {
+  return parsed_curves(io::whole_text(path, "a CSV file with named columns"), path, selection, tell);
 }
 
 void assume_scatter(Curve& curve) {
@@ -302,10 +299,11 @@ TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& 
       y.push_back(value_of(record, like.name, dimension));
     }
   }
+  if (in_logarithm(like.abscissa)) begin_earlier(test, dimension, like, x, y);
   TestCurve found;
   for (const double at : like.x)
     found.y.push_back(x.size() < 2 ? nan : interpolated(x, y, at, in_logarithm(like.abscissa)));
-  count_from_first(like.name, found.y);
+  if (like.name == "strain") count_from_first(found.y);
   const auto end = std::upper_bound(x.begin(), x.end(), like.x.back()) - x.begin();
   x.resize(std::size_t(end));
   y.resize(std::size_t(end));

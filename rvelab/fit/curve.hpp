@@ -7,6 +7,7 @@
 //              which counts from its first point
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -33,6 +34,7 @@ struct Curve {
   std::string abscissa;             ///< "strain", "p" or "axial_stress"
   std::vector<double> x, y, error;  ///< SI; at most `most_points` rows of the measured range
   Features features{};              ///< of all its rows
+  std::string file{};               ///< path, for messages
 };
 
 inline constexpr std::size_t most_points = 12;
@@ -45,13 +47,17 @@ struct Selection {
   std::optional<double> from, to;  ///< of the abscissa, in the unit of its column; the ends of the file
 };
 
-/// The curves of a CSV file (io/import/csv_table.hpp: semicolons, decimal commas, quotation marks, `sep=`). Rows after
-/// the largest abscissa, where it falls, are unloading and left out. A curve of more than `most_points` rows is brought
-/// to those where it bends. InputError: no such file, an unknown column (with the known ones), a column or a quantity
-/// twice, an error of no column, a value that is no number, an abscissa that does not rise, fewer than two rows.
-std::vector<Curve> read_curves(const std::string& path, const Selection& selection = {});
+/// Takes a sentence about what was joined or left out.
+using Tell = std::function<void(const std::string&)>;
+
+/// The curves of a table as laboratories write it (measured_table.hpp), of its loading (loading.hpp). A curve of more
+/// than `most_points` rows is brought to those where it bends. InputError: no such file, no header, an unknown column
+/// (with the known ones), a column or a quantity twice, an error of no column, a cell of the loading that is no number,
+/// a strain that falls without unloading, fewer than two rows.
+std::vector<Curve> read_curves(const std::string& path, const Selection& selection = {}, const Tell& tell = {});
 /// The same from a text; `path` serves messages.
-std::vector<Curve> parsed_curves(const std::string& text, const std::string& path, const Selection& selection = {});
+std::vector<Curve> parsed_curves(const std::string& text, const std::string& path, const Selection& selection = {},
+                                 const Tell& tell = {});
 
 /// Gives the points standard errors as repeated tests of laboratories have them (laboratory_scatter).
 void assume_scatter(Curve& curve);
@@ -63,7 +69,7 @@ struct TestCurve {
   std::vector<double> y;  ///< at the abscissae of the measured one; NaN beyond its end
   Features features;      ///< up to the last of them
 };
-/// Only the rising part of the abscissa counts.
+/// Only the rising part of the abscissa counts; a stress may rise from stages before the last.
 TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& like);
 
 /// The points as targets of one curve; `test`: the name that begins theirs, "" for none.

@@ -18,7 +18,7 @@ constexpr const char *from_lammps = "write a text with write_data or write_dump 
                      *from_yade = "load it in YADE and write the packing with export.text",
                      *from_vtk = "save it as CSV (ParaView: File, Save Data)",
                      *from_numpy = "write it with numpy.savetxt, with a header that names its columns",
-                     *from_sheet = "save it as CSV in the program that wrote it",
+                     *from_sheet = "save the sheet as CSV in the program that wrote it",
                      *from_hdf5 =
                          "of a specimen of rvelab make tables with `rvelab export`, of another file with its program";
 }  // namespace formats
@@ -34,7 +34,7 @@ inline constexpr FileFormat file_formats[] = {
     {0, {"\x28\xb5\x2f\xfd", 4}, "packed by zstd", "unpack it with unzstd"},
     {0, {"\xfd\x37zXZ\0", 6}, "packed by xz", "unpack it with unxz"},
     {0, "BZh", "packed by bzip2", "unpack it with bunzip2; of a save of YADE write the packing with export.text"},
-    {0, {"PK\x03\x04", 4}, "packed by zip", "unpack it with unzip; save a workbook of Excel as CSV, an .npz by numpy"},
+    {0, {"PK\x03\x04", 4}, "packed by zip", "unpack it with unzip; save a workbook as CSV, an .npz by numpy"},
     {0, {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", 8}, "a workbook of Excel (.xls)", formats::from_sheet},
     {0, "\x93NUMPY", "an array of numpy (.npy)", formats::from_numpy},
     {0, {"\x80\x04\x95", 3}, "a pickle of Python", formats::from_numpy},
@@ -51,16 +51,24 @@ inline constexpr FileFormat file_formats[] = {
 
 /// What a file of these bytes is; nullptr: of no format in the list.
 inline const FileFormat* format_of(std::string_view bytes) {
+  const std::string_view head = bytes.substr(0, 4096);
+  static constexpr FileFormat in_zip[] = {
+      {0, "opendocument", "a sheet of LibreOffice (.ods)", formats::from_sheet},
+      {0, "[Content_Types].xml", "a workbook of Excel (.xlsx)", formats::from_sheet},
+      {0, "xl/", "a workbook of Excel (.xlsx)", formats::from_sheet},
+  };
+  if (head.starts_with("PK\x03\x04"))
+    for (const FileFormat& format : in_zip)
+      if (head.find(format.magic) != std::string_view::npos) return &format;
   for (const FileFormat& format : file_formats)
     if (bytes.size() > format.at && bytes.substr(format.at).starts_with(format.magic)) return &format;
   static constexpr FileFormat in_xml[] = {
       {0, "<!DOCTYPE boost_serialization>", "a save of YADE", formats::from_yade},
       {0, "<VTKFile", "a VTK file", formats::from_vtk},
   };
-  constexpr std::size_t head = 512;
   if (bytes.starts_with("<?xml") || bytes.starts_with("<VTKFile"))
     for (const FileFormat& format : in_xml)
-      if (bytes.substr(0, head).find(format.magic) != std::string_view::npos) return &format;
+      if (head.find(format.magic) != std::string_view::npos) return &format;
   return nullptr;
 }
 

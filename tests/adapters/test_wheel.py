@@ -63,6 +63,12 @@ class Wheel(unittest.TestCase):
             said = run(sys.executable, "-B", "-c", "import sys; sys.argv[1:] = ['--version']; from rvelab.program import "
                        "main_mpm; main_mpm()", PYTHONPATH=str(site))
             self.assertEqual(said.strip(), f"rvelab-mpm {version}")
+            # The tests that the installed fit compares with are there: it stops at its folder alone.
+            (place / "K").mkdir()
+            (place / "K/asked.json").write_text("{}")
+            fit = subprocess.run([site / "rvelab/native/bin/rvelab", "fit", "karlsruhe", "-o", place / "K"],
+                                 capture_output=True, text=True, env=BARE)
+            self.assertIn("asked.json", fit.stderr)
             # Its name is true: manylinux if it counts on nothing but glibc and libgcc_s, and then on no newer glibc.
             needs = Needs([file for file in (site / "rvelab/native").rglob("*") if file.is_file() and is_elf(file)])
             tag = made[0].stem.split("-")[-1]

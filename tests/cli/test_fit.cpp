@@ -218,5 +218,15 @@ TEST_CASE("Mistakes of a fit are told before any test") {
   expect_mistake(here.run(fit + "--predict A --vary material.friction=0.1:1"), "with a protocol");
   expect_mistake(here.run(fit + "--column q_over_p --target friction_angle_deg=30 --vary material.friction=0.1:1"),
                  "--column is given without --curve");
+  // A curve that no test of the protocol reaches, before a specimen is packed.
+  here.write("far.csv", "axial_strain,q_over_p\n0.001,0.2\n0.02,0.5\n");
+  const std::string far = " --recipe pack_dense --vary material.friction=0.1:1 --curve far.csv --set ";
+  expect_mistake(here.run("fit biaxial --set pack.number=1000000 --set stage.compression.to_strain=0.012" + far +
+                          "test.pressure_Pa=2e4"),
+                 "far.csv: the curve reaches a strain of 0.02, 8e-03 beyond the end of the test, "
+                 "stage.compression.to_strain = 0.012");
+  here.write("far.csv", "axial_stress_kPa,axial_strain\n50,0\n100,0.03\n");
+  expect_mistake(here.run("fit oedometer" + far + "test.pressure_Pa=5e4"), "stage.large.to_strain");
+  expect_mistake(here.run("fit oedometer" + far + "stage.large.to_strain=0.04"), "begins at a stress in Pa of 5e+04");
   expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
 }

@@ -56,7 +56,7 @@ TEST_CASE("A measured curve is read with its units and brought to few abscissae"
   const auto refused = [](const std::string& csv) { return input_error([&] { fit::parsed_curves(csv, "d.csv"); }); };
   CHECK_THAT(refused("strain,q_over_p\n0,0\n1,1\n"), Contains("d.csv") && Contains("axial_strain_percent"));
   CHECK_THAT(refused("axial_strain,r\n0,0\n1,1\n"), Contains("\"r\" is not known"));
-  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n0,1\n"), Contains("does not rise"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n0,1\n"), Contains("d.csv: 1 rows are left"));
   CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1,a\n"),
              Contains("d.csv:3: column q_over_p = a is not a finite number"));
   CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1\n"), Contains("d.csv:3: the row has 1 cells"));
@@ -124,6 +124,16 @@ TEST_CASE("The curve of a test is that of its last stage, between its records an
   const auto strains = fit::curve_of(test, 2, {"strain", "axial_stress", {first, second}, {0, 0.01}, {0, 0}}).y;
   CHECK(strains[0] == 0);
   CHECK(strains[1] == Approx(0.01));
+  // A stage before the last that rises to it counts too, its strain before that: sigma_1 = 8e3 + 4e4 strain.
+  std::vector<records::Record> before(2);
+  for (int k : {0, 1}) {
+    before[k].strain = 0.05 * k;
+    before[k].stress(1, 1) = -8e3 - 4e4 * before[k].strain;
+  }
+  before[1].stress(1, 1) *= 0.99;  // the last stage begins at 1e4
+  test.records.insert(test.records.begin(), before.begin(), before.end());
+  const auto longer = fit::curve_of(test, 2, {"strain", "axial_stress", {8e3, 12e3}, {0, 0}, {0, 0}}).y;
+  CHECK(longer[1] == Approx(0.05 + 0.01));
   CHECK(fit::targets_of(like, 3)[1].curve == 3);
 }
 

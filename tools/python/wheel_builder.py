@@ -2,8 +2,9 @@
 """Makes the wheel of rvelab from a build: wheel_builder.py [FOLDER] (default: the folder build/release/wheel).
 
 It is the backend that pyproject.toml names, so `pip wheel --no-build-isolation --no-deps tools/python` and `pip install`
-work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the programs, the protocols and the
-scripts of the figures. RVELAB_BUILD names another build, or the prefix of an installation. The same build gives the same bytes.
+work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the programs, the protocols with
+the curves that fits compare with, and the scripts of the figures. RVELAB_BUILD names another build, or the prefix of an
+installation. The same build gives the same bytes.
 Its name says what it needs: manylinux_2_N of a portable build (tools/package), linux where it counts on libraries of this
 machine.
 """
@@ -35,7 +36,8 @@ def native_files():
     build = build_folder()
     found = [(f"lib/{name}", build / "lib" / name) for name in ("librvelab.so.1", "librvelab-h5.so.1")]
     found += [(program, build / program) for program in PROGRAMS]
-    for folder, ending in (("share/rvelab/protocols", "*.toml"), ("share/rvelab/plot", "*.py")):
+    for folder, ending in (("share/rvelab/protocols", "*.toml"), ("share/rvelab/protocols", "*.csv"),
+                           ("share/rvelab/plot", "*.py")):
         files = sorted((build / folder).rglob(ending))
         found += [(f"{folder}/{file.relative_to(build / folder)}", file) for file in files]
         if not files:

@@ -65,19 +65,17 @@ std::vector<std::string> names_in_comments(const std::vector<std::string_view>& 
 
 }  // namespace
 
-/// "sep=;" of a spreadsheet, before the header.
-bool CsvTable::read_separator(std::string_view line, long number) {
+char named_separator(std::string_view line, const std::string& path, long number) {
   while (line.ends_with('\r')) line.remove_suffix(1);
   if (line.starts_with('"') && line.ends_with('"') && line.size() > 1) line = line.substr(1, line.size() - 2);
-  if (lower(line.substr(0, 4)) != "sep=") return false;
+  if (lower(line.substr(0, 4)) != "sep=") return 0;
   const std::string_view mark = line.substr(4);
   const bool allowed = mark.size() == 1 && std::string_view(",;\t |:").find(mark[0]) != std::string_view::npos;
   if (!allowed) {
-    throw InputError(path_ + ":" + std::to_string(number) + ": sep=" + keys::shortened(printable(mark)) +
+    throw InputError(path + ":" + std::to_string(number) + ": sep=" + keys::shortened(printable(mark)) +
                      " names no separator; allowed: one of , ; | : a tab or a blank; correct the line or remove it");
   }
-  delimiter_ = mark[0];
-  return true;
+  return mark[0];
 }
 
 /// "##PERIODIC:: a b c" of YADE's SpherePack.

@@ -29,6 +29,44 @@ bool is_number(std::string_view cell) {
 
 }  // namespace
 
+void split_cells(std::string_view line, char delimiter, const std::string& path, long number,
+                 std::deque<std::string>& kept, std::vector<std::string_view>& cells) {
+  const char* const blanks = delimiter == '\t' ? " \r" : " \t\r";
+  if (delimiter == ' ') line = without_blanks(line);
+  for (std::size_t begin = 0;;) {
+    const auto first = std::min(line.find_first_not_of(blanks, begin), line.size());
+    const auto next = [&](std::size_t from) {
+      return delimiter == ' ' ? line.find_first_of(" \t", from) : line.find(delimiter, from);
+    };
+    std::size_t end = next(delimiter == ' ' ? first : begin);
+    if (first < line.size() && line[first] == '"') {
+      std::string cell;
+      std::size_t at = first + 1;
+      for (bool open = true; open; ++at) {
+        if (at >= line.size()) {
+          throw InputError(path + ":" + std::to_string(number) +
+                           ": a quotation mark is not closed; allowed: cells in quotation marks on one line; close it");
+        }
+        const bool doubled = line[at] == '"' && at + 1 < line.size() && line[at + 1] == '"';
+        open = line[at] != '"' || doubled;
+        if (open) cell += line[at];
+        if (doubled) ++at;
+      }
+      cells.push_back(without_blanks(kept.emplace_back(std::move(cell))));
+      end = next(at);
+      if (!without_blanks(line.substr(at, end == std::string_view::npos ? end : end - at)).empty()) {
+        throw InputError(
+            path + ":" + std::to_string(number) +
+            ": text follows a closing quotation mark; allowed: the next cell; double the marks inside a cell");
+      }
+    } else {
+      cells.push_back(without_blanks(line.substr(begin, end - begin)));
+    }
+    if (end == std::string_view::npos) return;
+    begin = delimiter == ' ' ? line.find_first_not_of(" \t", end) : end + 1;
+  }
+}
+
 CsvTable::CsvTable(const std::string& path) : CsvTable(path, whole_text(path, "a CSV file")) {}
 
 CsvTable::CsvTable(const std::string& path, std::string text)
@@ -51,43 +89,6 @@ void CsvTable::add_row(long line, std::span<const std::string_view> cells) {
   lines_.push_back(line);
 }
 
-void CsvTable::split(std::string_view line, long number, std::vector<std::string_view>& cells) {
-  const char* const blanks = delimiter_ == '\t' ? " \r" : " \t\r";
-  if (delimiter_ == ' ') line = without_blanks(line);
-  for (std::size_t begin = 0;;) {
-    const auto first = std::min(line.find_first_not_of(blanks, begin), line.size());
-    const auto delimiter = [&](std::size_t from) {
-      return delimiter_ == ' ' ? line.find_first_of(" \t", from) : line.find(delimiter_, from);
-    };
-    std::size_t end = delimiter(delimiter_ == ' ' ? first : begin);
-    if (first < line.size() && line[first] == '"') {
-      std::string cell;
-      std::size_t at = first + 1;
-      for (bool open = true; open; ++at) {
-        if (at >= line.size()) {
-          throw InputError(path_ + ":" + std::to_string(number) +
-                           ": a quotation mark is not closed; allowed: cells in quotation marks on one line; close it");
-        }
-        const bool doubled = line[at] == '"' && at + 1 < line.size() && line[at + 1] == '"';
-        open = line[at] != '"' || doubled;
-        if (open) cell += line[at];
-        if (doubled) ++at;
-      }
-      cells.push_back(without_blanks(keep(std::move(cell))));
-      end = delimiter(at);
-      if (!without_blanks(line.substr(at, end == std::string_view::npos ? end : end - at)).empty()) {
-        throw InputError(
-            path_ + ":" + std::to_string(number) +
-            ": text follows a closing quotation mark; allowed: the next cell; double the marks inside a cell");
-      }
-    } else {
-      cells.push_back(without_blanks(line.substr(begin, end - begin)));
-    }
-    if (end == std::string_view::npos) return;
-    begin = delimiter_ == ' ' ? line.find_first_not_of(" \t", end) : end + 1;
-  }
-}
-
 void CsvTable::read_lines(std::string_view text) {
   std::vector<std::string_view> comments;
   bool begun = false;
@@ -107,10 +108,8 @@ void CsvTable::read_lines(std::string_view text) {
                        ", which is no UTF-8; allowed: text in UTF-8; save the file so, or give one that is undamaged");
     }
     if (columns_.empty()) {
-      if (!begun && read_separator(lines.line(), lines.number())) {
-        begun = true;
+      if (!std::exchange(begun, true) && (delimiter_ = named_separator(lines.line(), path_, lines.number())) != 0)
         continue;
-      }
       if (!read_first(lines.line(), lines.number(), comments)) continue;
     }
     read_row(lines.line(), lines.number());

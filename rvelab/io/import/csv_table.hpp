@@ -1,6 +1,6 @@
 // A table of values in columns, as spreadsheets, scripts and other programs write it; read whole, cells are asked for
-// by row and column name. Positions, contacts and measured curves come this way; so do the atoms of dumps and data
-// files, whose readers fill one row by row.
+// by row and column name. Positions and contacts come this way; so do the atoms of dumps and data files, whose readers
+// fill one row by row. Measured curves are read with more forbearance (fit/measured_table.hpp).
 //
 // Text is UTF-8, with or without a byte order mark, lines end in LF or CRLF. The header names the columns. Cells are
 // apart by commas, or by semicolons, tabs or blanks where the header has those and no commas, or by what a first line
@@ -26,6 +26,14 @@
 #include "rvelab/io/import/text.hpp"
 
 namespace rvelab::io {
+
+/// Appends the cells of a line, apart by `delimiter` (' ': any number of blanks), without quotation marks. `kept` holds
+/// those that are not in the line as they are; path and number serve the messages. InputError for an open quotation
+/// mark, and for text behind a closing one.
+void split_cells(std::string_view line, char delimiter, const std::string& path, long number,
+                 std::deque<std::string>& kept, std::vector<std::string_view>& cells);
+/// The mark that a line "sep=;" of a spreadsheet names; 0: it is no such line. InputError for a mark that is none.
+char named_separator(std::string_view line, const std::string& path, long number);
 
 class CsvTable {
  public:
@@ -71,10 +79,10 @@ class CsvTable {
   bool guessed_columns() const { return guessed_; }
 
  private:
-  /// Appends the cells of a line, without quotation marks.
-  void split(std::string_view line, long number, std::vector<std::string_view>& cells);
+  void split(std::string_view line, long number, std::vector<std::string_view>& cells) {
+    split_cells(line, delimiter_, path_, number, kept_, cells);
+  }
   void read_lines(std::string_view text);
-  bool read_separator(std::string_view line, long number);
   /// Takes the first line that is no comment; true if it is a row and not the header.
   bool read_first(std::string_view line, long number, const std::vector<std::string_view>& comments);
   void name_columns(const std::vector<std::string_view>& cells, long number,

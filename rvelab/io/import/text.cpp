@@ -7,6 +7,7 @@
 #include <array>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/utf8.hpp"
 #include "rvelab/keys/file_format.hpp"
 #include "rvelab/keys/regular_file.hpp"
 
@@ -65,6 +66,35 @@ std::size_t unpack_member(const std::string& path, std::string_view packed, std:
   return taken - state->avail_in;
 }
 
+void append_utf8(std::string& text, std::uint32_t letter) {
+  if (letter < 0x80) {
+    text += char(letter);
+    return;
+  }
+  const int more = letter < 0x800 ? 1 : letter < 0x10000 ? 2 : 3;
+  constexpr std::uint32_t first[] = {0, 0xc0, 0xe0, 0xf0};
+  text += char(first[more] | letter >> 6 * more);
+  for (int k = more - 1; k >= 0; --k) text += char(0x80 | (letter >> 6 * k & 0x3f));
+}
+
+std::string utf8_of_utf16(std::string_view text, bool big_end_first) {
+  const auto unit = [&](std::size_t at) {
+    const auto low = static_cast<unsigned char>(text[at + big_end_first]),
+               high = static_cast<unsigned char>(text[at + !big_end_first]);
+    return std::uint32_t(high) << 8 | low;
+  };
+  std::string found;
+  for (std::size_t at = 0; at + 1 < text.size(); at += 2) {
+    std::uint32_t letter = unit(at);
+    if (letter >= 0xd800 && letter < 0xdc00 && at + 3 < text.size()) {
+      at += 2;
+      letter = 0x10000 + ((letter & 0x3ff) << 10) + (unit(at) & 0x3ff);
+    }
+    if (letter != 0xfeff) append_utf8(found, letter);
+  }
+  return found;
+}
+
 std::string unpacked(const std::string& path, std::string_view packed) {
   const std::size_t most = (std::size_t{64} << 20) + 40 * packed.size();
   std::string text;
@@ -76,6 +106,26 @@ std::string unpacked(const std::string& path, std::string_view packed) {
 }
 
 }  // namespace
+
+std::string as_utf8(std::string_view text) {
+  const auto zeros = [&](std::size_t first) {
+    std::size_t count = 0, at = first;
+    for (; at < std::min<std::size_t>(text.size(), 200); at += 2) count += text[at] == 0;
+    return 2 * count > at / 2;
+  };
+  std::string found;
+  if (text.starts_with("\xff\xfe") || (text.size() > 3 && zeros(1))) {
+    found = utf8_of_utf16(text, false);
+  } else if (text.starts_with("\xfe\xff") || (text.size() > 3 && zeros(0))) {
+    found = utf8_of_utf16(text, true);
+  } else if (first_non_utf8(text) != std::string_view::npos) {
+    for (const char letter : text) append_utf8(found, static_cast<unsigned char>(letter));
+  } else {
+    found = text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
+  }
+  if (found.find('\n') == std::string::npos) std::replace(found.begin(), found.end(), '\r', '\n');
+  return found;
+}
 
 std::string whole_text(const std::string& path, const std::string& wanted) {
   auto text = keys::whole_file<std::string>(path, wanted);

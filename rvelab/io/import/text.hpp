@@ -17,6 +17,10 @@ using Text = std::shared_ptr<const std::string>;
 /// keys::whole_file, and where the packed file is cut, damaged, beyond that, or packed by another program.
 std::string whole_text(const std::string& path, const std::string& wanted);
 
+/// A text as machines under Windows write it, as UTF-8 without a byte order mark: UTF-16 by its mark or its zeros, else
+/// Latin-1 where it is no UTF-8. Lines that end in carriage returns alone end in line feeds.
+std::string as_utf8(std::string_view text);
+
 inline std::string_view without_blanks(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   return first == std::string_view::npos ? std::string_view{} : text.substr(first, last - first + 1);
