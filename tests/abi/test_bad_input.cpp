@@ -291,6 +291,7 @@ TEST_CASE("Null pointers, bad options and templates of another pool are refused"
   refused_def([](auto& def) { def.workers = -1; }, RVELAB_E_INPUT, "workers");
   refused_def([](auto& def) { def.trial_memory = 2; }, RVELAB_E_UNSUPPORTED, "trial_memory");
   refused_def([](auto& def) { def.flags = 1; }, RVELAB_E_UNSUPPORTED, "flags");
+  refused_def([](auto& def) { def.flags = RVELAB_POOL_COUNTED_IDS + 4; }, RVELAB_E_UNSUPPORTED, "knows 2 alone");
   refused_def([](auto& def) { def.tolerance_rel = not_a_number; }, RVELAB_E_INPUT, "tolerance_rel");
   refused_def([](auto& def) { def.tolerance_abs = -1; }, RVELAB_E_INPUT, "tolerance_abs");
   refused_def([](auto& def) { def.max_substeps = -1; }, RVELAB_E_INPUT, "max_substeps");
