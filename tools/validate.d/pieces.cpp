@@ -139,17 +139,18 @@ bool judged(const Path& path, const Specimen& specimen, int repeats) {
       repeated(repeats, [&](std::uint64_t seed) { return resolved(path, moved(specimen, seed)); });
   const Matrix3 start = Rve(specimen).stress();
   bool all_met = true;
-  double whole = 0;
+  double whole = 0, substeps_of_whole = 0;
   for (std::size_t n = 0; n < 4; ++n) {
     const auto stress_of = [](const Rve& rve) { return rve.stress(); };
     const std::vector<Run> runs =
         repeated(repeats, [&](std::uint64_t seed) { return along(path, moved(specimen, seed), sizes[n], stress_of); });
     double seconds = 0, substeps = 0;
     for (const Run& run : runs) seconds += run.seconds / repeats, substeps += double(run.substeps) / repeats;
-    if (n == 0) whole = seconds;
+    if (n == 0) whole = seconds, substeps_of_whole = substeps;
     const double ratio = seconds / whole;
     std::printf("%-12s %6.0e %9.0f %8.3f %6.2f %4.1f ", path.name, sizes[n], substeps, seconds, ratio, bars[n]);
     bool met = ratio <= bars[n];
+    std::string why = met ? "" : "time: " + std::to_string(substeps / substeps_of_whole) + " times the sub-steps; ";
     for (int quarter = 0; quarter < quarters; ++quarter) {
       const bool value = (quarter + 1) * quarter_length <= by_value;
       const Matrix3 answer = value ? references[0].stress[quarter] : mean(references, quarter);
@@ -161,10 +162,15 @@ bool judged(const Path& path, const Specimen& specimen, int repeats) {
           specimen.solver.relative_tolerance * (answer - from).norm() + specimen.solver.absolute_tolerance * p;
       const double error = (found - answer).norm();
       const double scatter = value ? 0 : std::hypot(standard_error(references, quarter), standard_error(runs, quarter));
+      if (error > allowed + by_chance * scatter)
+        why += "stress at " + std::to_string(100 * (quarter + 1) * quarter_length) +
+               " %: " + std::to_string(error / allowed) + " times its tolerance, " +
+               std::to_string((error - allowed) / scatter) + " standard errors beyond; ";
       met = met && error <= allowed + by_chance * scatter;
       std::printf(" %8.5f %8.5f %8.5f", error / p, scatter / p, allowed / p);
     }
     std::printf("  %s\n", met ? "met" : "MISSED");
+    if (!met) std::printf("    why: %s\n", why.substr(0, why.size() - 2).c_str());
     std::fflush(stdout);
     all_met = all_met && met;
   }

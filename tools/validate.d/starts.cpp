@@ -99,6 +99,13 @@ bool judged(const std::string& name, const Path& path, const Specimen& specimen,
     std::printf("%-14s %-10s %6ld %9ld %9.3f %6.2f %4s %10.6f %10.6f  %s\n", name.c_str(), path.name, counts[n],
                 runs[n].substeps, 1e3 * runs[n].seconds, ratio, bar.c_str(), error / p, allowed / p,
                 met ? "met" : "MISSED");
+    if (ratio > bars[n]) {
+      const double step = runs[ten].seconds / double(runs[ten].substeps), steps = step * double(runs[n].substeps);
+      std::printf(
+          "    why: its sub-steps, at the time of those of ten pieces, take %.3f ms; %ld calls the rest, %.2f us "
+          "each\n",
+          1e3 * steps, counts[n], 1e6 * (runs[n].seconds - steps) / double(counts[n]));
+    }
     std::fflush(stdout);
     all_met = all_met && met;
   }
