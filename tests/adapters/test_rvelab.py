@@ -198,6 +198,10 @@ class PoolTest(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, f"out.{name}.*{text}"):
                     self.pool.trial(ids, dH, out=out)
         out = rvelab.Batch(4, rvelab.MEASURES)
+        out.contact = out.sigma
+        with self.assertRaisesRegex(ValueError, "out.(sigma and out.contact|contact and out.sigma) share memory"):
+            self.pool.trial(ids, dH, out=out)
+        out = rvelab.Batch(4, rvelab.MEASURES)
         out.sigma = np.zeros((8, 3, 3))[2:6]  # a part of an array of one's own
         self.assertEqual(self.pool.trial(ids, dH, out=out).sigma.tobytes(), good.sigma.tobytes())
 

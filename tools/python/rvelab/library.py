@@ -130,6 +130,7 @@ class Batch:
 
     def expect_fits(self, n: int, want: str | Iterable[str]) -> None:
         """ValueError unless the library can write a trial of n RVEs into these arrays."""
+        places = []  # first byte, the one after the last, name
         for name, (shape, kind) in self._arrays(n).items():
             array = getattr(self, name, None)
             if array is None and name in MEASURES:
@@ -146,6 +147,11 @@ class Batch:
                     if holds)
                 raise ValueError(f"out.{name} is {found}{', ' + order if order else ''}; allowed: a writeable array of "
                                  f"{np.dtype(kind)} and shape {shape}, contiguous in order C, as Batch({n}, want) makes it")
+            places.append((array.ctypes.data, array.ctypes.data + array.nbytes, name))
+        places.sort()
+        for (_, end, first), (begin, _, second) in zip(places, places[1:]):
+            if begin < end:
+                raise ValueError(f"out.{first} and out.{second} share memory; give each an array of its own")
 
 
 def load() -> ctypes.CDLL:
