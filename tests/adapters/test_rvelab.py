@@ -259,6 +259,7 @@ class PoolTest(unittest.TestCase):
                            (lambda: self.pool.trial(rve, zero[None], tokens=[1, 1]), "allowed: 1, one for each"),
                            (lambda: self.pool.trial(rve, zero[None], out=rvelab.Batch(2)), r"shape \(2, 3, 3\); allowed:.*\(1, 3, 3\)"),
                            (lambda: self.pool.trial(rve, zero[None], want="tangent", out=rvelab.Batch(1)), "no array for tangent"),
+                           (lambda: self.pool.trial(rve, zero[None], want="stress", out=rvelab.Batch(1)), "allowed: contact"),
                            (lambda: self.pool.trial(np.int32([rve & 0x7fffffff]), zero[None]), "int32 are cut.*int64"),
                            (lambda: self.pool.trial(np.float32([rve]), zero[None]), "float32 are cut.*int64"),
                            (lambda: self.pool.trial(None, zero[None]), "ids is None"),

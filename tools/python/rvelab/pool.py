@@ -31,7 +31,8 @@ for _name, _arguments in {
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
         "run_stages": (_pool, _number, _ids, c_char_p, c_void_p, c_void_p),
-        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32),
+        "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
     getattr(library, "rvelab_" + _name).argtypes = _arguments
@@ -154,7 +155,7 @@ class Pool:
         again. Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
         ids, batch = numbers_of(rves), BatchStruct()
         gradients = gradients_of(dH, (len(ids), 3, 3))
-        want = want if isinstance(want, str) else tuple(want)
+        want = want if isinstance(want, str) else tuple(want)  # once, where it is a generator
         found = Batch(len(ids), want) if out is None else out
         if out is not None:
             Batch.expect_fits(out, len(ids), want)
