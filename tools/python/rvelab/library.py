@@ -181,6 +181,7 @@ def load() -> ctypes.CDLL:
 
 
 library = load()
+functions: dict[str, Any] = {}  # those that return a status, by their names without rvelab_ (pool.py)
 
 
 _folder = os.path.dirname(__file__)
@@ -197,7 +198,7 @@ def _level_of_caller() -> int:
 def call(name: str, *arguments: Any, batch: Batch | Mixed | None = None, result: np.ndarray | None = None) -> None:
     """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text. batch,
     result: what it writes to, for error.batch and warning.result."""
-    status = getattr(library, "rvelab_" + name)(*arguments)
+    status = functions[name](*arguments)
     if status != 0:
         tell(status, name, arguments[0], result if batch is None else batch, batch)
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .interrupt import long_call
 from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError,
-                      RvelabWarning, bytes_of, call, gradients_of, id_of, library, numbers_of)
+                      RvelabWarning, bytes_of, call, functions, gradients_of, id_of, library, numbers_of)
 from .program import flat, plain
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
@@ -35,7 +35,8 @@ for _name, _arguments in {
         "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
-    getattr(library, "rvelab_" + _name).argtypes = _arguments
+    functions[_name] = getattr(library, "rvelab_" + _name)
+    functions[_name].argtypes = _arguments
 
 
 def stages_text(stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> str:
