@@ -188,3 +188,11 @@ TEST_CASE("HDF5's library is known to one file of rvelab") {
   }
   CHECK(knowing == std::vector<std::string>{"rvelab/io/hdf5/library.hpp"});
 }
+
+TEST_CASE("text of the libraries is written by TextStream, whatever locale a host has made the global one") {
+  for (const std::string& file : code_under("rvelab")) {
+    if (file.starts_with("rvelab/cli/") || file == "rvelab/error.hpp") continue;
+    CAPTURE(file);
+    CHECK(text_of(root / file).find("std::ostringstream") == std::string::npos);
+  }
+}

@@ -12,7 +12,7 @@ from threading import get_ident
 from time import monotonic
 from typing import Any
 
-from .library import call, library, tell
+from .library import call, functions, library, tell
 
 _lock = threading.Lock()
 _main = threading.main_thread().ident
@@ -84,7 +84,7 @@ def long_call(name: str, pool: c_void_p, *arguments: Any, batch: Any = None, res
         _listen()
     _working = pool
     try:
-        status = getattr(library, "rvelab_" + name)(pool, *arguments)
+        status = functions[name](pool, *arguments)
     finally:
         _working = None
         if _told:

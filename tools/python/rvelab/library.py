@@ -115,11 +115,16 @@ class Batch:
     Rows of an RVE that failed are NaN, its token is 0. want: a name among MEASURES, or several."""
 
     def __init__(self, n: int, want: str | Iterable[str] = ()) -> None:
+        wanted = self._names(want)
+        for name, (shape, kind) in self._arrays(n).items():
+            setattr(self, name, None if name in MEASURES and name not in wanted else np.empty(shape, kind))
+
+    @staticmethod
+    def _names(want: str | Iterable[str]) -> set[str]:
         wanted = {want} if isinstance(want, str) else set(want)
         if wanted - set(MEASURES):
             raise ValueError(f"want names {sorted(wanted - set(MEASURES))}; allowed: {', '.join(MEASURES)}")
-        for name, (shape, kind) in self._arrays(n).items():
-            setattr(self, name, None if name in MEASURES and name not in wanted else np.empty(shape, kind))
+        return wanted
 
     @staticmethod
     def _arrays(n: int) -> dict[str, tuple[tuple[int, ...], type]]:
@@ -130,10 +135,11 @@ class Batch:
 
     def expect_fits(self, n: int, want: str | Iterable[str]) -> None:
         """ValueError unless the library can write a trial of n RVEs into these arrays."""
-        for name, (shape, kind) in self._arrays(n).items():
+        wanted, places = Batch._names(want), []  # first byte, the one after the last, name
+        for name, (shape, kind) in Batch._arrays(n).items():
             array = getattr(self, name, None)
             if array is None and name in MEASURES:
-                if name == want or name in want:
+                if name in wanted:
                     raise ValueError(f"out has no array for {name}, which want names: out=Batch({n}, want)")
                 continue
             flags = array.flags if isinstance(array, np.ndarray) else None
@@ -146,6 +152,11 @@ class Batch:
                     if holds)
                 raise ValueError(f"out.{name} is {found}{', ' + order if order else ''}; allowed: a writeable array of "
                                  f"{np.dtype(kind)} and shape {shape}, contiguous in order C, as Batch({n}, want) makes it")
+            places.append((array.ctypes.data, array.ctypes.data + array.nbytes, name))
+        places.sort()
+        for (_, end, first), (begin, _, second) in zip(places, places[1:]):
+            if begin < end:
+                raise ValueError(f"out.{first} and out.{second} share memory; give each an array of its own")
 
 
 def load() -> ctypes.CDLL:
@@ -163,12 +174,14 @@ def load() -> ctypes.CDLL:
         getattr(library, name_of_call).restype = c_char_p
     library.rvelab_capabilities.restype = c_int64
     version = library.rvelab_abi_version()
-    if version >> 16 != 1 or version & 65535 < 1:
-        raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.1 and later 1.x")
+    if version >> 16 != 1 or version & 65535 < 4:
+        raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.4 and later 1.x: let "
+                          f"RVELAB_LIBRARY name a newer {name}")
     return library
 
 
 library = load()
+functions: dict[str, Any] = {}  # those that return a status, by their names without rvelab_ (pool.py)
 
 
 _folder = os.path.dirname(__file__)
@@ -185,7 +198,7 @@ def _level_of_caller() -> int:
 def call(name: str, *arguments: Any, batch: Batch | Mixed | None = None, result: np.ndarray | None = None) -> None:
     """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text. batch,
     result: what it writes to, for error.batch and warning.result."""
-    status = getattr(library, "rvelab_" + name)(*arguments)
+    status = functions[name](*arguments)
     if status != 0:
         tell(status, name, arguments[0], result if batch is None else batch, batch)
 

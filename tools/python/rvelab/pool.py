@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .interrupt import long_call
 from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError,
-                      RvelabWarning, bytes_of, call, gradients_of, id_of, library, numbers_of)
+                      RvelabWarning, bytes_of, call, functions, gradients_of, id_of, library, numbers_of)
 from .program import flat, plain
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
@@ -31,10 +31,12 @@ for _name, _arguments in {
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
         "run_stages": (_pool, _number, _ids, c_char_p, c_void_p, c_void_p),
-        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "interrupt": (_pool, c_int32),
+        "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
-    getattr(library, "rvelab_" + _name).argtypes = _arguments
+    functions[_name] = getattr(library, "rvelab_" + _name)
+    functions[_name].argtypes = _arguments
 
 
 def stages_text(stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> str:
@@ -154,7 +156,7 @@ class Pool:
         again. Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
         ids, batch = numbers_of(rves), BatchStruct()
         gradients = gradients_of(dH, (len(ids), 3, 3))
-        want = want if isinstance(want, str) else tuple(want)
+        want = want if isinstance(want, str) else tuple(want)  # once, where it is a generator
         found = Batch(len(ids), want) if out is None else out
         if out is not None:
             Batch.expect_fits(out, len(ids), want)
