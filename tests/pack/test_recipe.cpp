@@ -201,7 +201,7 @@ TEST_CASE("a message names each key of a recipe by its table and name, and no ta
   }
   // What is found once all keys are read.
   const std::string table = "grains.grading=tabulated";
-  const std::string bare = std::string(small).erase(std::string(small).find("smallest"), 52);
+  const std::string bare = std::string(small).erase(std::string(small).find("smallest"), 49);
   check(message_of(bare, {table, "grains.passing=[0, 1]"}), "grains.radii_m has 0 values");
   check(message_of(bare, {table, "grains.radii_m=[2e-3, 1e-3]", "grains.passing=[0, 1]"}),
         "grains.radii_m is not ascending");
