@@ -213,8 +213,8 @@ FitSetup setup_of(FitArguments& arguments) {
   }
   expect_parameters(setup);
   read_specimens(setup, arguments);
-  assume_errors(setup);
   expect_runnable(setup);
+  assume_errors(setup);
   return setup;
 }
 

@@ -38,12 +38,14 @@ void expect_reach(const fit::Curve& curve, const protocol::Stage& last, const pr
     const std::string key = "stage." + last.name + ".to_strain";
     if (farthest > end * (1 + 1e-9))
       refuse(curve, "the curve reaches a strain of", farthest, "the end of the test, " + key + " =", end,
-             "set " + key + "=" + in_words(farthest) + " or more, or end the curve there (to)");
+             "set " + key + "=" + in_words(farthest) +
+                 " or more, or end the curve there (measured.to, or without its last rows)");
   }
   if (over_strain) {
     if (curve.x.front() < 0)
       refuse(curve, "the curve begins at a strain of", curve.x.front(), "the begin of the test at", 0,
-             "compression is positive: change the sign of the column, or begin at 0 (from)");
+             "compression is positive: change the sign of the column, or begin at 0 (measured.from, or without its "
+             "first rows)");
     return;
   }
   constexpr double missed = 0.01;  // a test is at its pressure within a tolerance
@@ -51,11 +53,13 @@ void expect_reach(const fit::Curve& curve, const protocol::Stage& last, const pr
     const double highest = *std::max_element(path->pressures.begin(), path->pressures.end());
     if (curve.x.back() > highest * (1 + missed))
       refuse(curve, "the curve reaches a stress in Pa of", curve.x.back(), "the end of the test, its last to_Pa",
-             highest, "set to_Pa of stage " + last.name + ", or end the curve there (to)");
+             highest,
+             "set to_Pa of stage " + last.name + ", or end the curve there (measured.to, or without its last rows)");
   } else if (std::isfinite(end) && protocol.uses_pressure && curve.x.front() < protocol.pressure * (1 - missed)) {
-    refuse(curve, "the curve begins at a stress in Pa of", curve.x.front(),
-           "the begin of the test, test.pressure_Pa =", protocol.pressure,
-           "begin the curve there (from), or let the test begin at a lower pressure");
+    refuse(
+        curve, "the curve begins at a stress in Pa of", curve.x.front(),
+        "the begin of the test, test.pressure_Pa =", protocol.pressure,
+        "begin the curve there (measured.from, or without its first rows), or let the test begin at a lower pressure");
   }
 }
 

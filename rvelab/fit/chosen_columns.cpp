@@ -4,6 +4,7 @@
 #include <map>
 
 #include "rvelab/error.hpp"
+#include "rvelab/fit/numerals.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "rvelab/keys/shortened.hpp"
 
@@ -92,7 +93,9 @@ KnownHeader known_header(const std::vector<std::string>& columns) {
   KnownHeader header;
   header.allowed = known_columns(true) + " first, then " + known_columns(false);
   if (columns.empty()) {
-    header.recognised = [](std::span<const std::string> names) {
+    header.recognised = [](std::span<const std::string> names) -> std::size_t {
+      // "e;0,65" above the header is a value.
+      if (std::any_of(names.begin(), names.end(), [](const auto& name) { return numeral(name); })) return 0;
       const auto kinds = std::count_if(names.begin(), names.end(), [](const auto& name) { return column_kind(name); });
       const bool has_abscissa = std::any_of(names.begin(), names.end(), [](const auto& name) {
         const auto kind = column_kind(name);
@@ -105,7 +108,9 @@ KnownHeader known_header(const std::vector<std::string>& columns) {
   header.wanted = columns.size();
   header.recognised = [columns](std::span<const std::string> names) {
     return std::size_t(std::count_if(columns.begin(), columns.end(), [&](const std::string& text) {
-      return std::find(names.begin(), names.end(), asked_for(text).name) != names.end();
+      const std::string asked = in_small_letters(asked_for(text).name);
+      return std::any_of(names.begin(), names.end(),
+                         [&](const std::string& name) { return in_small_letters(name) == asked; });
     }));
   };
   return header;

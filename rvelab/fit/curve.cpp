@@ -245,8 +245,9 @@ void begin_earlier(const records::TestResult& test, int dimension, const Curve& 
   for (std::size_t k = all.size() - calibrate::last_stage(test).size(); k > 0; --k) {
     const records::Record& record = all[k - 1];
     const double at = value_of(record, like.abscissa, dimension);
-    if (!(at < x.front())) return;
+    if (!(at <= x.front())) return;
     if (record.stage != all[k].stage) behind += std::abs(record.strain);
+    if (at == x.front()) continue;  // a stage begins with the record that ended the one before
     x.insert(x.begin(), at);
     y.insert(y.begin(), value_of(record, like.name, dimension) - (like.name == "strain" ? behind : 0));
   }

@@ -53,6 +53,7 @@ class Loader {
     if (rows_.empty()) return;
     const Rows all = rows_;
     take_out_glitches(x_, rows_, found_.glitches);
+    for (const std::size_t row : rows_) largest_deviator_ = std::max(largest_deviator_, deviator(row));  // not of NaN
     if (!readings.from) leave_out_seating();
     keep_up_to_largest();
     leave_out_end();
@@ -73,11 +74,6 @@ class Loader {
   }
 
   double deviator(std::size_t row) const { return row < y_.size() ? y_[row] : std::nan(""); }
-  double largest_deviator() const {
-    double largest = 0;
-    for (const std::size_t row : rows_) largest = std::max(largest, deviator(row));  // false for NaN
-    return largest;
-  }
 
   /// Rows before contact; of a stress, those that are not above zero.
   void leave_out_seating() {
@@ -85,8 +81,8 @@ class Loader {
     if (!is_strain_) {
       contact = 0;
       while (contact < rows_.size() && !(x_[rows_[contact]] > 0)) ++contact;
-    } else if (const double largest = largest_deviator(); largest > 0) {
-      for (std::size_t k = 0; k < rows_.size() && !(deviator(rows_[k]) > 0.05 * largest); ++k)
+    } else if (largest_deviator_ > 0) {
+      for (std::size_t k = 0; k < rows_.size() && !(deviator(rows_[k]) > 0.05 * largest_deviator_); ++k)
         if (deviator(rows_[k]) <= 0) contact = k;
       if (contact == rows_.size()) return;
       found_.counts_from_contact = x_[rows_[contact]] != 0;
@@ -109,8 +105,8 @@ class Loader {
 
   /// The machine lets go: at the end the deviator drops to nothing, in big steps, while the strain hardly goes on.
   void leave_out_end() {
-    const double largest = largest_deviator();
-    if (!is_strain_ || !(largest > 0) || !(deviator(rows_.back()) <= 0.02 * largest)) return;
+    const double largest = largest_deviator_;
+    if (rows_.empty() || !is_strain_ || !(largest > 0) || !(deviator(rows_.back()) <= 0.02 * largest)) return;
     const double hardly = 0.01 * (x_[rows_.back()] - x_[rows_.front()]);
     std::size_t end = rows_.size();
     while (end > 0 && !(deviator(rows_[end - 1]) > 0.02 * largest)) --end;
@@ -162,7 +158,7 @@ class Loader {
       }
       const double before = deviator(rows_[begin - 1]);
       const bool has_deviator = is_strain_ && std::isfinite(before) && std::isfinite(lowest_deviator);
-      const bool unloaded = has_deviator && before - lowest_deviator > 0.03 * largest_deviator();
+      const bool unloaded = has_deviator && before - lowest_deviator > 0.03 * largest_deviator_;
       const bool noise = is_noise(largest, lowest);
       if (noise && !unloaded) {
         deepest_ = std::max(deepest_, largest - lowest);
@@ -207,6 +203,7 @@ class Loader {
   bool is_strain_;
   Rows rows_;
   double range_ = 0, step_ = 0;
+  double largest_deviator_ = 0;
   double deepest_ = 0;  ///< fall that was taken for noise
   Loading found_;
 };

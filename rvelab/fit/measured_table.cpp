@@ -29,6 +29,11 @@ bool holds_number(std::span<const std::string_view> cells) {
 
 }  // namespace
 
+std::string in_small_letters(std::string text) {
+  for (char& letter : text) letter = letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter;
+  return text;
+}
+
 std::string lines_in_words(const std::vector<long>& lines) {
   constexpr std::size_t most = 5;  // runs of lines
   std::string words = lines.size() == 1 ? "line " : "lines ";
@@ -89,7 +94,8 @@ void MeasuredTable::find_header(const KnownHeader& header) {
       if (line.find(delimiter) == std::string_view::npos && delimiter != ',') continue;
       std::vector<std::string> names = names_in(line, lines.number(), delimiter);
       const std::size_t known = header.recognised(names);
-      if (known >= header.wanted) {
+      const bool sentence = delimiter == ' ' && 2 * known < names.size();  // that happens to hold a name
+      if (known >= header.wanted && !sentence) {
         take(std::move(names), delimiter);
         if (!titles.empty())
           notes_.push_back("the header is line " + std::to_string(header_line_) +
@@ -105,7 +111,8 @@ void MeasuredTable::find_header(const KnownHeader& header) {
         first_number = line;
         first_number_line = lines.number();
       }
-      if (!words || known < best || (known == 0 && numbers)) continue;
+      if (!words || sentence || known < best || (known == 0 && numbers)) continue;
+      if (known == best && names.size() <= names_.size()) continue;
       best = known;
       take(std::move(names), delimiter);
     }
@@ -148,14 +155,10 @@ void MeasuredTable::read_rows() {
 }
 
 std::size_t MeasuredTable::column(const std::string& name) const {
-  const auto lower = [](std::string text) {
-    for (char& letter : text) letter = letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter;
-    return text;
-  };
   for (const bool exact : {true, false}) {
     std::optional<std::size_t> found;
     for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (exact ? names_[k] != name : lower(names_[k]) != lower(name)) continue;
+      if (exact ? names_[k] != name : in_small_letters(names_[k]) != in_small_letters(name)) continue;
       if (found)
         throw InputError(header_location() + ": the header has the column " + shown(name) + " twice, as columns " +
                          std::to_string(*found + 1) + " and " + std::to_string(k + 1) + "; allowed: once; rename one");

@@ -78,6 +78,9 @@ class MeasuredTable {
   std::vector<std::string> notes_;
 };
 
+/// Names of columns are the same whatever their case; letters of ASCII.
+std::string in_small_letters(std::string text);
+
 /// "lines 2 to 5, 9": of numbers that rise; long lists are cut.
 std::string lines_in_words(const std::vector<long>& lines);
 

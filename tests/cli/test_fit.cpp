@@ -223,10 +223,10 @@ TEST_CASE("Mistakes of a fit are told before any test") {
   const std::string far = " --recipe pack_dense --vary material.friction=0.1:1 --curve far.csv --set ";
   expect_mistake(here.run("fit biaxial --set pack.number=1000000 --set stage.compression.to_strain=0.012" + far +
                           "test.pressure_Pa=2e4"),
-                 "far.csv: the curve reaches a strain of 0.02, 8e-03 beyond the end of the test, "
+                 "far.csv: the curve reaches a strain of 0.02, 0.008 beyond the end of the test, "
                  "stage.compression.to_strain = 0.012");
   here.write("far.csv", "axial_stress_kPa,axial_strain\n50,0\n100,0.03\n");
   expect_mistake(here.run("fit oedometer" + far + "test.pressure_Pa=5e4"), "stage.large.to_strain");
-  expect_mistake(here.run("fit oedometer" + far + "stage.large.to_strain=0.04"), "begins at a stress in Pa of 5e+04");
+  expect_mistake(here.run("fit oedometer" + far + "stage.large.to_strain=0.04"), "begins at a stress in Pa of 50000");
   expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
 }

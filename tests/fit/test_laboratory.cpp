@@ -95,6 +95,10 @@ TEST_CASE("Titles above the header, units below it, remarks and time stamps are 
                                      {{"axial_strain=eps_a", "deviator=q"}, {}, {}});
   CHECK_THAT(units.said, Contains("left out: line 12"));
   CHECK(curves_of("Sample 3,\n,\neps_a,q\n%,kPa\n0,0\n1,50\n").curves[0].x[1] == 0.01);
+  CHECK(curves_of("p and e of the sample\np;100\ne;0.65\nEPS_A [%];Q [kPa]\n0;0\n1;50\n").curves[0].y[1] == 50e3);
+  CHECK(curves_of("Test\nEPS;Q\n%;kPa\n0;0\n1;50\n", {{"axial_strain=eps", "deviator=q"}, {}, {}}).curves[0].x[1] ==
+        0.01);
+  CHECK_THAT(refused("Test\nA;B\n%;kPa\n0;0\n1;50\n"), Contains("d.csv:2: the first column is \"A"));
   CHECK_THAT(refused("eps_a,q\nmm,kPa\n0,0\n1,50\n"), Contains("d.csv:1: the first column is \"eps_a [mm]\""));
   CHECK_THAT(refused("A,B\n0,0\n1,50\n", by_name),
              Contains("d.csv:1: the column Axial Strain (%) is missing; the header is A, B"));
