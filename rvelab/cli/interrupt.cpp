@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <system_error>
 #include <utility>
 
 #include "rvelab/cli/command.hpp"
@@ -45,20 +46,25 @@ void tell_stopped(const std::string& done) {
 
 }  // namespace
 
-EndInASecond::EndInASecond(std::function<std::string()> done)
-    : thread_([this, done = std::move(done)] {
-        using namespace std::chrono_literals;
-        constexpr auto pause = 50ms, patience = 1000ms;
-        for (auto waited = 0ms; waited < patience && !over_; waited += stop ? pause : 0ms)
-          std::this_thread::sleep_for(pause);
-        if (over_) return;
-        tell_stopped(done());
-        ::_exit(128 + received);
-      }) {}
+EndInASecond::EndInASecond(std::function<std::string()> done) {
+  const auto watch = [this, done = std::move(done)] {
+    using namespace std::chrono_literals;
+    constexpr auto pause = 50ms, patience = 1000ms;
+    for (auto waited = 0ms; waited < patience && !over_; waited += stop ? pause : 0ms)
+      std::this_thread::sleep_for(pause);
+    if (over_) return;
+    tell_stopped(done());
+    ::_exit(128 + received);
+  };
+  try {
+    thread_ = std::thread(watch);
+  } catch (const std::system_error&) {  // no thread is to be had: only phases that ask for the signal end by it
+  }
+}
 
 EndInASecond::~EndInASecond() {
   over_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void end_stopped(const std::string& done) {

@@ -29,9 +29,11 @@ TEST_CASE("running out of memory is told with the command and a remedy, exit cod
   const Workplace here;
   here.import_packing("dense_p20");
   // A million grains take more than a hundred megabytes.
-  const Outcome outcome = here.run("-c 'ulimit -v 100000; exec " RVELAB_PROGRAM
-                                   " pack pack_dense -o big.h5 --threads 1 --set pack.number=1000000'",
-                                   "/bin/bash");
+  Outcome outcome = here.run("-c 'ulimit -v 100000; exec " RVELAB_PROGRAM
+                             " pack pack_dense -o big.h5 --threads 1 --set pack.number=1000000'",
+                             "/bin/bash");
+  CHECK_THAT(outcome.errors, Contains("each trial packing takes some 1 h"));
+  outcome.errors.erase(0, outcome.errors.find('\n') + 1);  // that line
   expect_one_line_of_text(outcome, 1);
   CHECK_THAT(outcome.errors, Contains("out of memory") && Contains("pack.number=1000000") && Contains("ulimit -v"));
   CHECK(!std::filesystem::exists(here / "big.h5"));
@@ -89,7 +91,7 @@ TEST_CASE("a listing shows what is not defined as a dash, never as a number that
   const Outcome shown = here.run("inspect S.h5");
   CHECK(shown.code == 0);
   CHECK(shown.output.find("nan") == std::string::npos);
-  CHECK_THAT(shown.output, Contains("fabric_anisotropy        -\n"));
+  CHECK(std::regex_search(shown.output, std::regex("\nfabric_anisotropy +-\n")));
   CHECK_THAT(here.run("inspect S.h5 --json").output, Contains("\"fabric_anisotropy\": null"));
 }
 

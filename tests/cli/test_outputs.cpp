@@ -44,7 +44,7 @@ struct Desk : Workplace {
     std::filesystem::copy_file(yade + ".json", *this / "m.json");
     std::ofstream(*this / "test.toml") << "[test]\nname = \"t\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 1e-5\n"
                                           "record_every = 1e-5\n";
-    std::ofstream(*this / "tiny.toml") << "[pack]\nname = \"tiny\"\nshape = \"disc\"\nnumber = 16\nthickness_m = 0.1\n"
+    std::ofstream(*this / "tiny.toml") << "[pack]\nname = \"tiny\"\nshape = \"disc\"\nnumber = 40\nthickness_m = 0.1\n"
                                           "[grains]\ngrading = \"uniform\"\nsmallest_radius_m = 3e-3\n"
                                           "largest_radius_m = 7e-3\n[target]\npressure_Pa = 100e3\n[contact]\n"
                                           "law = \"linear\"\n[[material]]\nname = \"sand\"\ndensity_kg_m3 = 2650\n"
