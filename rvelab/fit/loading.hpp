@@ -18,7 +18,6 @@
 // Rows outside the range that is asked for are not judged.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

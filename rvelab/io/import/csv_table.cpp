@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
