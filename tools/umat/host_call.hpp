@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rvelab/pool/floating_point.hpp"
+#include "rvelab/threads/classic_locale.hpp"
 #include "tools/umat/points.hpp"
 
 namespace umat {
@@ -12,6 +13,12 @@ namespace umat {
 /// What stresses of the host are: sigma; R^T sigma R with R of the polar decomposition of F; or sigma before a step and
 /// R^T sigma R after it with R of the increment, which the host turns by R itself.
 enum class Axes { global, corotational, turned_by_host };
+
+/// While a call lasts: the default floating-point environment and the locale of C, whatever the host has set.
+struct CallEnvironment {
+  rvelab::pool::FloatingPoint numbers{};
+  rvelab::ClassicLocale text{};
+};
 
 /// What PROPS says.
 struct Properties {

@@ -178,7 +178,7 @@ int advance(const Call& call) {
 
 int integrate(Kinematics kinematics, int dimension, PointData* data) noexcept {
   if (data == nullptr) return -1;
-  const rvelab::pool::FloatingPoint standard;
+  const CallEnvironment environment;
   try {
     remember_folder();
     const auto needed = [](const void* pointer, const char* name) {

@@ -146,7 +146,7 @@ void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double
                  const double*, const double* drot, double* pnewdt, const double*, const double* dfgrd0,
                  const double* dfgrd1, const int* noel, const int* npt, const int*, const int*, const int*,
                  const int*) {
-  const rvelab::pool::FloatingPoint standard;
+  const CallEnvironment environment;
   try {
     remember_folder();
     if (statev == nullptr || or_zero(nstatv) < 2)

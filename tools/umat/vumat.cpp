@@ -235,7 +235,7 @@ void umat::vumat_(const int* nblock, const int* ndir, const int* nshr, const int
                   const double* enerInternOld, const double* enerInelasOld, const double*, const double*,
                   const double* defgradNew, const double*, double* stressNew, double* stateNew, double* enerInternNew,
                   double* enerInelasNew) {
-  const rvelab::pool::FloatingPoint standard;
+  const CallEnvironment environment;
   const auto serve = [&]<class Real>(Real) {
     const auto in = [](const double* array) { return reinterpret_cast<const Real*>(array); };
     const auto out = [](double* array) { return reinterpret_cast<Real*>(array); };
