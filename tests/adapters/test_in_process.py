@@ -77,14 +77,14 @@ class CtrlC(unittest.TestCase):
                         self.assertEqual([pool.snapshot(rve) for rve in ids], before)
 
     def test_the_rve_goes_on_with_the_bits_of_one_that_was_not_disturbed(self) -> None:
-        disturbed, alone = rvelab.Rve(specimen), rvelab.Rve(specimen)
+        disturbed, alone = rvelab.Rve(specimen, counted_ids=True), rvelab.Rve(specimen, counted_ids=True)
         self.assertLess(self.seconds(lambda: disturbed.relax(1e-300, 10**9)), 1)
         for rve in (disturbed, alone):
             rve.apply(small)
         self.assertEqual(disturbed.snapshot(), alone.snapshot())
 
     def test_a_handler_of_ones_own_runs_when_the_call_has_ended(self) -> None:
-        rve, alone, seen = rvelab.Rve(specimen), rvelab.Rve(specimen), []
+        rve, alone, seen = rvelab.Rve(specimen, counted_ids=True), rvelab.Rve(specimen, counted_ids=True), []
         before = signal.signal(signal.SIGINT, lambda *_: seen.append(1))
         try:
             timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
@@ -160,8 +160,8 @@ class WarningsAsErrors(unittest.TestCase):
     """A warning that a filter makes an error says what the state is, and holds what the call gave."""
 
     def setUp(self) -> None:
-        self.pool = rvelab.Pool(workers=1, tolerance_rel=1e-9, tolerance_abs=1e-9, max_substeps=10**6)
-        self.alone = rvelab.Pool(workers=1, tolerance_rel=1e-9, tolerance_abs=1e-9, max_substeps=10**6)
+        self.pool, self.alone = (rvelab.Pool(counted_ids=True, workers=1, tolerance_rel=1e-9, tolerance_abs=1e-9,
+                                             max_substeps=10**6) for _ in range(2))
         for pool in (self.pool, self.alone):
             self.addCleanup(pool.close)
         self.ids, self.twins = (pool.spawn(pool.template(specimen), 2) for pool in (self.pool, self.alone))

@@ -240,7 +240,7 @@ class SameBits(unittest.TestCase):
 
     def test_threads_and_pool_files_have_the_same_bits(self) -> None:
         def moved(workers: int) -> tuple[bytes, bytes]:
-            pool = rvelab.Pool(workers=workers)
+            pool = rvelab.Pool(counted_ids=True, workers=workers)
             rves = pool.spawn(pool.template(folder / "R.h5"), 4)
             sigma = [pool.trial(rves, np.array([[[0, 1e-4 * (k + 1), 0], [0, -2e-4, 0], [0, 0, 0]] for k in range(4)])).sigma.tobytes()]
             pool.commit(rves)

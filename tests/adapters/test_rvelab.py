@@ -255,7 +255,7 @@ class PoolTest(unittest.TestCase):
         (rve,) = self.pool.spawn(self.template)
         for call, text in [(lambda: self.pool.apply(rve, np.zeros((2, 2))), r"\(2, 2\); allowed: \(3, 3\)"),
                            (lambda: self.pool.trial([rve], np.zeros((2, 3, 3))), r"allowed: \(1, 3, 3\)"),
-                           (lambda: self.pool.apply(rve + 0.5, zero), "single precision"),
+                           (lambda: self.pool.apply(1.5, zero), "single precision"),
                            (lambda: self.pool.trial(rve, zero[None], want=["stress"]), "allowed: contact, reynolds"),
                            (lambda: self.pool.trial(rve, zero[None], tokens=[1, 1]), "allowed: 1, one for each"),
                            (lambda: self.pool.trial(rve, zero[None], out=rvelab.Batch(2)), r"\(2, 3, 3\); allowed:.*\(1, 3, 3\)"),

@@ -16,6 +16,7 @@ from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mix
                       RvelabWarning, bytes_of, call, functions, gradients_of, id_of, library, numbers_of)
 from .program import flat, plain
 
+_COUNTED_IDS = 2  # RVELAB_POOL_COUNTED_IDS
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
 for _name, _arguments in {
         "pool_def_init": (c_void_p, _size), "pool_create": (c_void_p, c_void_p), "pool_destroy": (_pool,),
@@ -74,16 +75,19 @@ def parameters_text(settings: Mapping[str, Any]) -> str:
 class Pool:
     """RVEs that are worked on together. Options are those of rvelab_pool_def: workers (0: one per core),
     trial_memory (0 keep, 1 recompute), tolerance_rel, tolerance_abs, max_substeps, damping, min_height (m);
-    0: what the specimen says."""
+    0: what the specimen says. Ids and tokens begin with numbers drawn at random, so that those of other pools and
+    processes are refused; counted_ids: they count from the lowest, and snapshots and pool files of the same calls have
+    the same bytes."""
 
-    def __init__(self, **options: float) -> None:
+    def __init__(self, counted_ids: bool = False, **options: float) -> None:
         self._pool, definition = c_void_p(), Definition()
         allowed = [name for name, _ in Definition._fields_[2:-2]]
         call("pool_def_init", byref(definition), sizeof(definition))
         for name, value in options.items():
             if name not in allowed:
-                raise TypeError(f"Pool has no option {name!r}; allowed: {', '.join(allowed)}")
+                raise TypeError(f"Pool has no option {name!r}; allowed: {', '.join(allowed)}, counted_ids")
             setattr(definition, name, value)
+        definition.flags = _COUNTED_IDS if counted_ids else 0
         call("pool_create", byref(definition), byref(self._pool))
 
     def close(self) -> None:
