@@ -47,6 +47,16 @@ inline void set_radii(Grading& grading, double ratio) {
   grading.largest_radius = grading.smallest_radius / ratio;
 }
 
+/// Of both laws, by kappa; kt/kn of 0.5 to 0.9.
+inline void set_stiffness(Drawn& d, Random& random) {
+  Material& m = d.recipe.materials[0];
+  const bool plane = dimension_of(d.recipe.shape) == 2;
+  m.normal_stiffness = d.kappa * pressure * (plane ? thickness : 2 * mean_radius);
+  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
+  m.poisson_ratio = 0.2;
+  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+}
+
 inline Drawn drawn_recipe(std::uint64_t seed) {
   Random random(seed, 0);
   Drawn d;
@@ -113,10 +123,7 @@ inline Drawn drawn_kind(std::uint64_t seed) {
   d.friction = m.friction = kind == 0 ? random(0.05, 0.09) : random(0.3, 0.5);
   d.kappa = kind == 2 ? random.power(3.7, 4) : random.power(2.9, 3.5);
   r.contact.law = kind == 1 ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
-  m.poisson_ratio = 0.2;
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  set_stiffness(d, random);
   r.contact.rolling = kind == 4;
   m.rolling_stiffness = random(0.5, 1.5);
   m.rolling_friction = random(0.1, 0.3);
@@ -151,10 +158,7 @@ inline Drawn drawn_interacting(std::uint64_t seed) {
   d.kappa = random.power(2.7, 3.5);
   const bool hertz = random.chance(0.4);
   r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (r.shape == Shape::disc ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
-  m.poisson_ratio = 0.2;
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  set_stiffness(d, random);
   set_loading(r);
   if (random.chance(0.5)) r.preparation.friction = 0.1;
   d.ratio = 1 / d.ratio;
@@ -205,10 +209,7 @@ inline Drawn drawn_shape(std::uint64_t seed, std::uint64_t kind) {
   d.kappa = random.power(2.7, 3.7);
   const bool hertz = r.clumps && random.chance(0.4);
   r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (plane ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
-  m.poisson_ratio = 0.2;
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  set_stiffness(d, random);
   set_loading(r);
   if (random.chance(0.5)) r.preparation.friction = 0.1;
   d.ratio = 1 / d.ratio;
@@ -218,7 +219,7 @@ inline Drawn drawn_shape(std::uint64_t seed, std::uint64_t kind) {
 /// Seeds from here on: of seven kinds (seed % 7) that an outside check drew. Increments of 1e-6 to 1e-2, and all errors
 /// count, those of chaotic increments too: a user has one calculation, and asks how far it is from a slow one.
 constexpr std::uint64_t first_of_all_errors = 501;
-constexpr const char* drawn_kinds[] = {"loose discs",      "radii 1:4", "overlaps of 1e-4", "ellipses",
+constexpr const char* drawn_kinds[] = {"loose discs",   "radii 1:4", "overlaps of 1e-4", "ellipses",
                                        "friction 0.07", "clumps",    "ellipsoids"};
 
 inline Drawn drawn_for_all_errors(std::uint64_t seed) {
@@ -242,10 +243,7 @@ inline Drawn drawn_for_all_errors(std::uint64_t seed) {
   d.friction = m.friction = kind == 4 ? random(0.06, 0.08) : random(0.3, 0.6);
   d.kappa = kind == 2 ? random.power(3.9, 4) : random.power(2.7, 3.7);
   r.contact.law = kind == 1 && random.chance(0.5) ? Law::hertz_mindlin : Law::linear_stiffness;
-  m.normal_stiffness = d.kappa * pressure * (plane ? thickness : 2 * mean_radius);
-  m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
-  m.poisson_ratio = 0.2;
-  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  set_stiffness(d, random);
   set_loading(r);
   if (kind != 0 && random.chance(0.5)) r.preparation.friction = std::min(m.friction, 0.1);
   d.ratio = 1 / d.ratio;

@@ -69,8 +69,8 @@ void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& 
 
 /// Adds the error that lags before the end have left: contacts slid elsewhere than in a slower increment. The parts
 /// between checks are judged each by its own pressure and stiffness ratio, lag K p u, and their errors add by squares,
-/// to each other and to that of the end: lags_left times `path_lag`, Pa, the root of the sum of these squares. Below the
-/// strain of the overlaps, x < 1, forces change by the part x, and about that part of the contacts may slide.
+/// to each other and to that of the end: lags_left times `path_lag`, Pa, the root of the sum of these squares. Below
+/// the strain of the overlaps, x < 1, forces change by the part x, and about that part of the contacts may slide.
 void add_error_of_path(State& state, double strain, double path_lag, Report& report);
 
 }  // namespace rvelab
