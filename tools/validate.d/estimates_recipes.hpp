@@ -107,7 +107,6 @@ inline Drawn drawn_kind(std::uint64_t seed) {
   pack::Recipe& r = d.recipe;
   const auto kind = seed % 5;
   r.shape = kind == 1 || kind == 2 ? Shape::sphere : kind == 3 ? Shape::ellipse : Shape::disc;
-  const int dimension = dimension_of(r.shape);
   r.seed = seed;
   r.number = std::size_t(kind == 0 ? 400 : kind == 4 ? random(150, 250) : random(120, 180));
   r.thickness = thickness;
