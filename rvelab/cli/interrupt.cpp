@@ -50,9 +50,11 @@ EndInASecond::EndInASecond(std::function<std::string()> done) {
   const auto watch = [this, done = std::move(done)] {
     using namespace std::chrono_literals;
     constexpr auto pause = 50ms, patience = 1000ms;
-    for (auto waited = 0ms; waited < patience && !over_; waited += stop ? pause : 0ms)
-      std::this_thread::sleep_for(pause);
-    if (over_) return;
+    {
+      std::unique_lock lock(mutex_);
+      for (auto waited = 0ms; waited < patience; waited += stop ? pause : 0ms)
+        if (ended_.wait_for(lock, pause, [&] { return over_; })) return;
+    }
     tell_stopped(done());
     ::_exit(128 + received);
   };
@@ -63,7 +65,11 @@ EndInASecond::EndInASecond(std::function<std::string()> done) {
 }
 
 EndInASecond::~EndInASecond() {
-  over_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  ended_.notify_all();
   if (thread_.joinable()) thread_.join();
 }
 

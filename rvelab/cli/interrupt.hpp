@@ -2,7 +2,9 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -21,7 +23,9 @@ class EndInASecond {
   EndInASecond& operator=(const EndInASecond&) = delete;
 
  private:
-  std::atomic<bool> over_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool over_ = false;
   std::thread thread_;
 };
 

@@ -23,6 +23,7 @@
 #include <thread>
 #include <vector>
 
+#include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/study/measures.hpp"
@@ -150,7 +151,7 @@ bool judged(const Path& path, const Specimen& specimen, int repeats) {
     const double ratio = seconds / whole;
     std::printf("%-12s %6.0e %9.0f %8.3f %6.2f %4.1f ", path.name, sizes[n], substeps, seconds, ratio, bars[n]);
     bool met = ratio <= bars[n];
-    std::string why = met ? "" : "time: " + std::to_string(substeps / substeps_of_whole) + " times the sub-steps; ";
+    std::string why = met ? "" : "time: " + in_words(substeps / substeps_of_whole) + " times the sub-steps; ";
     for (int quarter = 0; quarter < quarters; ++quarter) {
       const bool value = (quarter + 1) * quarter_length <= by_value;
       const Matrix3 answer = value ? references[0].stress[quarter] : mean(references, quarter);
@@ -163,9 +164,8 @@ bool judged(const Path& path, const Specimen& specimen, int repeats) {
       const double error = (found - answer).norm();
       const double scatter = value ? 0 : std::hypot(standard_error(references, quarter), standard_error(runs, quarter));
       if (error > allowed + by_chance * scatter)
-        why += "stress at " + std::to_string(100 * (quarter + 1) * quarter_length) +
-               " %: " + std::to_string(error / allowed) + " times its tolerance, " +
-               std::to_string((error - allowed) / scatter) + " standard errors beyond; ";
+        why += "stress at " + in_words(100 * (quarter + 1) * quarter_length) + " %: " + in_words(error / allowed) +
+               " times its tolerance, " + in_words((error - allowed) / scatter) + " standard errors beyond; ";
       met = met && error <= allowed + by_chance * scatter;
       std::printf(" %8.5f %8.5f %8.5f", error / p, scatter / p, allowed / p);
     }
