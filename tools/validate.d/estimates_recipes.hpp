@@ -47,6 +47,11 @@ inline void set_radii(Grading& grading, double ratio) {
   grading.largest_radius = grading.smallest_radius / ratio;
 }
 
+inline void set_aspects(pack::GrainFraction& ellipses, Random& random) {
+  ellipses.smallest_aspect_ratio = random(0.5, 0.7);
+  ellipses.largest_aspect_ratio = 0.9;
+}
+
 /// Of both laws, by kappa; kt/kn of 0.5 to 0.9.
 inline void set_stiffness(Drawn& d, Random& random) {
   Material& m = d.recipe.materials[0];
@@ -115,8 +120,7 @@ inline Drawn drawn_kind(std::uint64_t seed) {
   grading.curve = kind == 1 ? GradingCurve::linear : GradingCurve::uniform;
   set_radii(grading, d.ratio);
   if (kind == 3) {
-    r.fractions[0].smallest_aspect_ratio = random(0.5, 0.7);
-    r.fractions[0].largest_aspect_ratio = 0.9;
+    set_aspects(r.fractions[0], random);
   }
   Material& m = r.materials[0];
   d.friction = m.friction = kind == 0 ? random(0.05, 0.09) : random(0.3, 0.5);
@@ -235,8 +239,7 @@ inline Drawn drawn_for_all_errors(std::uint64_t seed) {
   d.ratio = kind == 1 ? 0.25 : random(0.4, 0.7);
   set_radii(r.fractions[0].grading, d.ratio);
   if (kind == 3) {
-    r.fractions[0].smallest_aspect_ratio = random(0.5, 0.7);
-    r.fractions[0].largest_aspect_ratio = 0.9;
+    set_aspects(r.fractions[0], random);
   }
   Material& m = r.materials[0];
   d.friction = m.friction = kind == 4 ? random(0.06, 0.08) : random(0.3, 0.6);

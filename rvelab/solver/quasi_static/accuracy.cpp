@@ -9,6 +9,16 @@ namespace rvelab {
 
 using namespace constants;
 
+namespace {
+
+/// `factor` where contacts just hold the grains, c = 1, and less where they hold them more firmly.
+double if_isostatic(double factor, double constraint_ratio) {
+  const double beyond = std::max(constraint_ratio, 1.0) - 1;
+  return factor / (1 + isostatic_width * beyond * beyond);
+}
+
+}  // namespace
+
 double network_stiffness(double pressure, double mean_overlap, double diameter, double hardening) {
   return pressure > 0 && mean_overlap > 0 ? share_of_directions * hardening * pressure * diameter / mean_overlap : 0.0;
 }
@@ -27,19 +37,14 @@ double error_per_unbalance(double stiffness_ratio, double constraint_ratio, doub
   const double soft = stiff_factor / (s * s * std::sqrt(s)) / (dimension == 3 ? s : 1.0);
   const double damped = std::max(1.0, damping / Damping{}.local_quasi_static);
   if (!(constraint_ratio > 0)) return damped * soft;
-  const double beyond = std::max(constraint_ratio, 1.0) - 1;
-  return damped * std::max(soft, hyperstatic_factor + isostatic_factor / (1 + isostatic_width * beyond * beyond));
+  return damped * std::max(soft, hyperstatic_factor + if_isostatic(isostatic_factor, constraint_ratio));
 }
 
 double error_per_unbalance_of_start(double constraint_ratio) {
-  const double beyond = std::max(constraint_ratio, 1.0) - 1;
-  return firm_factor_of_start + isostatic_factor_of_start / (1 + isostatic_width * beyond * beyond);
+  return firm_factor_of_start + if_isostatic(isostatic_factor_of_start, constraint_ratio);
 }
 
-double creep_after_relaxation(double constraint_ratio) {
-  const double beyond = std::max(constraint_ratio, 1.0) - 1;
-  return 1 + isostatic_creep / (1 + isostatic_width * beyond * beyond);
-}
+double creep_after_relaxation(double constraint_ratio) { return 1 + if_isostatic(isostatic_creep, constraint_ratio); }
 
 double error_growth(double strain, double strain_of_overlap) {
   return std::sqrt(std::sqrt(std::sqrt(std::max(1.0, strain / strain_of_overlap))));
