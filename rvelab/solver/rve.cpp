@@ -24,19 +24,14 @@ namespace {
 /// A state for a call that changes it: no trial is pending, all buffers are there.
 State& prepared_for_change(State& state) {
   if (state.pending()) state.revert();
-  state.drop_start();
+  state.drop_trial_cache();
   state.allocate();
   return state;
 }
 
-/// The same for another trial. Where trials share their start, its forces come with it, or are evaluated then.
+/// The same for another trial.
 State& prepared_for_trial(State& state) {
-  if (state.pending()) {
-    if (state.has_start())
-      state.revert_but_forces();
-    else
-      state.revert();
-  }
+  if (state.pending()) state.revert_but_forces();
   state.allocate();
   return state;
 }
@@ -71,12 +66,13 @@ State& apply_deferred_strain(State& state) {
   return state;
 }
 
-/// Asks a state that has its buffers. A const call changes nothing: a released state is asked by a copy.
+/// Asks a state that has its buffers and forces. A const call changes nothing: where it has not, a copy is asked.
 template <class Question>
 auto answer(const State& state, const Question& question) {
-  if (!state.released()) return question(state);
+  if (state.has_forces()) return question(state);
   State copy = state;
   copy.allocate();
+  copy.assembly();
   return question(std::as_const(copy));
 }
 
@@ -87,7 +83,7 @@ Matrix3 strained_stress(const State& state) {
 }
 
 /// In interactions other than contacts, J; 0 where no energy is booked.
-double stored_in_interactions(const State& state) {
+double stored_in_interactions(State& state) {
   double sum = 0;
   if (state.model().options.energy_balance)
     for (const InteractionState& each : network_of(state.model(), state.assembly()).interactions)
@@ -133,16 +129,15 @@ struct Increment {
   FrameSplit split;
 };
 
-Report load(State& state, Increment increment, Beginning beginning) {
+Report load_increment(State& state, Increment increment, TrialCaching caching) {
   const bool quasi_static = loading_of(increment.dt) == Loading::quasi_static;
-  if (!quasi_static || increment.split.rigid || state.has_deferred()) state.need_forces();
   if (quasi_static && increment.split.rigid) return load_rotation(state, increment.split, increment.gradient);
   long deferred = 0;
   if (state.has_deferred() && !(quasi_static && is_along_deferred(state, increment.split))) {
     deferred = apply_deferred(state);
     increment.split = split_increment(state.cell(), increment.gradient);  // the lattice may have been reduced
   }
-  Report report = quasi_static ? load_quasi_static(state, increment.split, beginning)
+  Report report = quasi_static ? load_quasi_static(state, increment.split, caching)
                                : load_at_rate(state, increment.split, increment.dt);
   report.substeps += deferred;
   return report;
@@ -168,38 +163,32 @@ Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
 Response Rve::attempt(const Matrix3& displacement_gradient, double dt) {
-  return begin(displacement_gradient, dt, Beginning::shared);
+  return make_trial(displacement_gradient, dt, TrialCaching::on);
 }
 
 Response Rve::apply(const Matrix3& displacement_gradient, double dt) {
-  const Response response = begin(displacement_gradient, dt, Beginning::own);
+  const Response response = make_trial(displacement_gradient, dt, TrialCaching::off);
   commit();
   return response;
 }
 
-Response Rve::begin(const Matrix3& displacement_gradient, double dt, Beginning beginning) {
+Response Rve::make_trial(const Matrix3& displacement_gradient, double dt, TrialCaching caching) {
   State& state = prepared_for_trial(*state_);
-  try {
-    expect_time(dt);
-    const CallClock clock(state.model().times);
-    const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
-    std::optional<Deferral> deferral;
-    if (loading_of(dt) == Loading::quasi_static) deferral = deferral_of(state, increment.split);
-    if (!deferral)
-      return run_as_trial(state, Trial::Changes::grains, [&] {
-        const Report report = load(state, increment, beginning);
-        return respond(state, report, displacement_gradient, dt);
-      });
-    // It moves no grain: the trial is the cell alone.
-    state.need_forces();
-    return run_as_trial(state, Trial::Changes::deferred_strain, [&] {
-      const Report report = defer(state, increment.split, *deferral);
-      return respond(state, report, displacement_gradient, dt, deferral->change.stress);
+  expect_time(dt);
+  const CallClock clock(state.model().times);
+  const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
+  std::optional<Deferral> deferral;
+  if (loading_of(dt) == Loading::quasi_static) deferral = deferral_of(state, increment.split);
+  if (!deferral)
+    return run_as_trial(state, Trial::Changes::grains, [&] {
+      const Report report = load_increment(state, increment, caching);
+      return respond(state, report, displacement_gradient, dt);
     });
-  } catch (...) {
-    state.need_forces();
-    throw;
-  }
+  // It moves no grain: the trial is the cell alone.
+  return run_as_trial(state, Trial::Changes::deferred_strain, [&] {
+    const Report report = defer(state, increment.split, *deferral);
+    return respond(state, report, displacement_gradient, dt, deferral->change.stress);
+  });
 }
 
 Response Rve::apply(const MixedTarget& target, double dt) {
@@ -210,8 +199,8 @@ Response Rve::apply(const MixedTarget& target, double dt) {
     Matrix3 gradient = Matrix3::Zero();
     const long deferred = apply_deferred(state);
     state.control().deferred.stress_slope.setZero();
-    Report report = loading_of(dt) == Loading::at_rate ? load_at_rate(state, target, dt, gradient)
-                                                       : load_quasi_static(state, target, gradient);
+    Report report = loading_of(dt) == Loading::at_rate ? follow_target_at_rate(state, target, dt, gradient)
+                                                       : follow_target_quasi_static(state, target, gradient);
     report.substeps += deferred;
     return respond(state, report, gradient, dt);
   });
@@ -223,7 +212,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   return run_and_commit(state, [&] { return rvelab::relax(state, unbalanced, max_steps); });
 }
 
-bool Rve::shares_start() const { return state_->has_start(); }
+bool Rve::has_trial_cache() const { return state_->has_trial_cache(); }
 bool Rve::pending() const { return state_->pending(); }
 void Rve::commit() {
   if (pending()) state_->commit();
@@ -275,7 +264,7 @@ Network Rve::network() const {
 const Cell& Rve::cell() const { return state_->strained_cell(); }
 bool Rve::cell_thin() const { return state_->is_thin(cell()); }
 std::size_t Rve::size() const { return state_->model().size(); }
-std::uint64_t Rve::grain_steps() const { return state_->assembly().state.grain_steps; }
+std::uint64_t Rve::grain_steps() const { return state().assembly().state.grain_steps; }
 std::uint64_t Rve::grain_steps_made() const { return state_->grain_steps_made(); }
 std::uint64_t Rve::grain_steps_shared() const { return state_->grain_steps_shared(); }
 double Rve::reference_pressure() const { return state_->reference().pressure; }
@@ -295,7 +284,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
 
 Interactions Rve::interactions() const {
   // A large cell keeps its grains in an order of its own.
-  const Assembly& assembly = state_->assembly();
+  const Assembly& assembly = state().assembly();
   if (!assembly.state.memory_order.empty()) return Interactions(specimen());
   Interactions all = interactions_of(assembly.pairs);
   copy_settings(state_->model().interaction_settings, all);
@@ -314,7 +303,7 @@ void Rve::set_interactions(const Interactions& interactions) {
 }
 
 const EnergyTerms* Rve::energy_balance() const {
-  return state_->model().options.energy_balance ? &state_->assembly().state.energy_balance : nullptr;
+  return state_->model().options.energy_balance ? &state().assembly().state.energy_balance : nullptr;
 }
 
 const InteractionSettings& Rve::interaction_settings() const { return state_->model().interaction_settings; }
@@ -341,7 +330,7 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
 void Rve::zero_velocities() { apply_deferred_strain(*state_).zero_velocities(); }
 void Rve::take_as_reference() { apply_deferred_strain(*state_).take_as_reference(); }
 
-Specimen Rve::specimen() const { return close_assembly(state_->model(), state_->assembly()); }
+Specimen Rve::specimen() const { return close_assembly(state().model(), state().assembly()); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
 void Rve::restore(std::span<const std::byte> snapshot) { open_instead(from_bytes(snapshot)); }
 

@@ -15,7 +15,7 @@
 
 namespace rvelab {
 
-enum class Beginning;
+enum class TrialCaching;
 class State;
 struct StepTimes;
 
@@ -57,7 +57,7 @@ class Rve {
   void exchange() noexcept;
   /// Whether the Rve keeps what a trial did before its first sub-step (masses, a stress that settled), with which other
   /// trials of the same committed state begin, to the same bits. It is gone with that state, and by release().
-  bool shares_start() const;
+  bool has_trial_cache() const;
 
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
@@ -155,7 +155,8 @@ class Rve {
   void restore(std::span<const std::byte> snapshot);
 
  private:
-  Response begin(const Matrix3& displacement_gradient, double dt, Beginning beginning);
+  Response make_trial(const Matrix3& displacement_gradient, double dt, TrialCaching caching);
+  const State& state() const { return *state_; }
   /// What watch, share and measure_time set stays.
   void open_instead(const Specimen& specimen);
 

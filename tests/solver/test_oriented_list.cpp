@@ -100,11 +100,11 @@ TEST_CASE("No overlapping pair of needles is missing from the list while they ar
   Opened opened(spinning_needles());
   const Model& f = opened.model;
   Assembly& a = opened.now;
-  begin_loading(f, a, Loading::at_rate);
+  set_loading(f, a, Loading::at_rate);
   const double step = 2e-3;
   std::size_t touching = 0, missing = 0, turned = 0;
   for (int k = 0; k < 1000; ++k) {
-    advance(f, a, {split_increment(a.cell, step * flow), 1, step, Loading::at_rate});
+    make_substeps(f, a, {split_increment(a.cell, step * flow), 1, step, Loading::at_rate});
     const std::set<ListedPair> listed = opened.listed();
     for (const ListedPair& pair : opened.candidates(0)) {
       if (!(opened.overlap(pair) > 0)) continue;
@@ -125,10 +125,10 @@ TEST_CASE("Needles are listed where they are nearer than the skin, and seldom wh
   Opened opened(spinning_needles());
   const Model& f = opened.model;
   Assembly& a = opened.now;
-  begin_loading(f, a, Loading::at_rate);
+  set_loading(f, a, Loading::at_rate);
   for (int k = 0; k < 5; ++k) {
     const Matrix3 flow = gradient(-0.15, 0.5, 0, -0.15);
-    advance(f, a, {split_increment(a.cell, 0.4 * flow), 200, 2e-3, Loading::at_rate});
+    make_substeps(f, a, {split_increment(a.cell, 0.4 * flow), 200, 2e-3, Loading::at_rate});
     rebuild(f, a);
     const std::set<ListedPair> listed = opened.listed();
     std::size_t by_circles = 0, near = 0, missing = 0;

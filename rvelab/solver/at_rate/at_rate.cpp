@@ -20,7 +20,7 @@ constexpr long rate_check_interval = 100, control_interval = 50;
 /// Sub-steps of a time, at most so long each.
 double steps_in(double time, double longest) { return std::ceil(time / longest * (1 - 1e-9)); }
 
-Advanced advance(State& state, const FrameSplit& increment, long steps, double step, bool deep) {
+Advanced advance_at_rate(State& state, const FrameSplit& increment, long steps, double step, bool deep) {
   return state.advance(
       {increment, steps, step, Loading::at_rate, state.model().options.fixed_time_step == 0, deep ? deep_check : 0});
 }
@@ -34,7 +34,7 @@ class RateControl {
         dt_(dt),
         servo_(target, state.model().dimension(), stress(), Servo::Missed::at_once),
         path_{target, state.model().dimension()} {
-    state_.begin_loading(Loading::at_rate);
+    state_.set_loading(Loading::at_rate);
   }
 
   Report make(Matrix3& gradient);
@@ -97,8 +97,8 @@ Report RateControl::make(Matrix3& gradient) {
     const double share = double(steps) == count ? left : left * double(steps) / count;
     fraction_ = double(steps) == count ? 1.0 : fraction_ + share;
     const Matrix3 change = next_strain(share, double(steps) * step);
-    const Advanced made =
-        advance(state_, split_increment(state_.cell(), path_.go_on(change, fraction_)), steps, step, time_step_.deep);
+    const Advanced made = advance_at_rate(state_, split_increment(state_.cell(), path_.go_on(change, fraction_)), steps,
+                                          step, time_step_.deep);
     report.substeps += made.steps;
     since_check += made.step < 0.999 * step ? time_step_.interval : made.steps;
     mean_residual += share * servo_.residual(fraction_, path_.strain, stress());
@@ -114,7 +114,7 @@ Report RateControl::make(Matrix3& gradient) {
 
 Report load_at_rate(State& state, const FrameSplit& whole, double dt) {
   Report report;
-  state.begin_loading(Loading::at_rate);
+  state.set_loading(Loading::at_rate);
   state.control().deferred.stress_slope.setZero();
   const Matrix3 start_frame = state.cell().rotation;
   const StrainPath path(whole, true);
@@ -131,14 +131,15 @@ Report load_at_rate(State& state, const FrameSplit& whole, double dt) {
     const long steps = steps_left <= limit.interval + limit.interval / 2 ? steps_left : limit.interval;
     fraction = steps == steps_left ? 1.0 : fraction + left * double(steps) / double(steps_left);
     const Matrix3 next = path.at(fraction);
-    report.substeps += advance(state, next_part(start_frame, state.cell(), done, next), steps, step, limit.deep).steps;
+    report.substeps +=
+        advance_at_rate(state, next_part(start_frame, state.cell(), done, next), steps, step, limit.deep).steps;
     done = next;
   }
   report.unbalanced_ratio = state.unbalanced_ratio(state.checked_balance());
   return report;
 }
 
-Report load_at_rate(State& state, const MixedTarget& target, double dt, Matrix3& gradient) {
+Report follow_target_at_rate(State& state, const MixedTarget& target, double dt, Matrix3& gradient) {
   return RateControl(state, target, dt).make(gradient);
 }
 

@@ -11,7 +11,7 @@ Report load_at_rate(State& state, const FrameSplit& increment, double dt);
 
 /// A mixed target over the time dt, no more: `gradient` is what was found. A stress that is missed is no error:
 /// Report::target_held says so.
-Report load_at_rate(State& state, const MixedTarget& target, double dt, Matrix3& gradient);
+Report follow_target_at_rate(State& state, const MixedTarget& target, double dt, Matrix3& gradient);
 
 /// The sub-step: the critical step of the contacts, and the collisions ahead.
 struct TimeStep {

@@ -375,7 +375,7 @@ Advanced SubSteps::make() {
 
 }  // namespace
 
-Advanced advance(const Model& model, Assembly& assembly, const Advance& what) {
+Advanced make_substeps(const Model& model, Assembly& assembly, const Advance& what) {
   return SubSteps(model, assembly, what).make();
 }
 

@@ -1,12 +1,12 @@
 // Sub-steps: the cell goes linearly from one lattice to the next while the grains follow. Everything that loads a
-// specimen is made of calls of `advance`.
+// specimen is made of calls of `make_substeps`.
 #pragma once
 
 #include "rvelab/solver/loading/velocities.hpp"
 
 namespace rvelab {
 
-/// What one call of advance is to do. The increment is F_c = R U in the cell frame (split_increment).
+/// What one call of make_substeps is to do. The increment is F_c = R U in the cell frame (split_increment).
 struct Advance {
   FrameSplit increment;
   long steps = 1;
@@ -30,6 +30,6 @@ constexpr long deep_check = 4;
 /// Makes the sub-steps of one Advance: cell, grains, contacts, list, energy balance. Afterwards the force rows belong
 /// to the new positions and the frame has turned by R. Throws IncrementFailed (cell too thin, overlap beyond the
 /// limit).
-Advanced advance(const Model& model, Assembly& assembly, const Advance& what);
+Advanced make_substeps(const Model& model, Assembly& assembly, const Advance& what);
 
 }  // namespace rvelab

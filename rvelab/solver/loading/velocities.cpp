@@ -64,7 +64,7 @@ void rescale_inertia(const Model& model, const RowSums& sums, Assembly& assembly
     assembly.state.energy_balance.removed_kinetic += before - kinetic_energy(model, assembly);
 }
 
-void begin_loading(const Model& model, Assembly& assembly, Loading loading) {
+void set_loading(const Model& model, Assembly& assembly, Loading loading) {
   LastStep& last = assembly.state.last_step;
   if (loading != last.loading) {
     // Physical velocities mean nothing to scaled masses, nor the reverse: carried over they would be an impact. Their

@@ -9,7 +9,7 @@ struct RowSums;
 
 /// Sets the units of the stored velocities for a kind of loading, and the physical masses; those of quasi-static
 /// loading are the caller's to scale. Velocities end where the kind of loading changes.
-void begin_loading(const Model& model, Assembly& assembly, Loading loading);
+void set_loading(const Model& model, Assembly& assembly, Loading loading);
 
 /// scale_inertia with the change of kinetic energy booked.
 void rescale_inertia(const Model& model, const RowSums& sums, Assembly& assembly);

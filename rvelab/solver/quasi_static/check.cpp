@@ -11,8 +11,8 @@ namespace rvelab {
 
 using namespace constants;
 
-EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
-  state_.begin_loading(Loading::quasi_static);
+void EquilibriumCheck::prepare() {
+  state_.set_loading(Loading::quasi_static);
   QuasiStaticControl& control = state_.control();
   not_yet_checked_ = !state_.masses().in_use;
   if (!not_yet_checked_) return;

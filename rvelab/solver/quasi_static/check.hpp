@@ -1,5 +1,5 @@
 // The equilibrium check of quasi-static loading. Every 50 sub-steps, over as many calls as make them, an interval ends:
-// masses are scaled anew and the stiffness ratio of the interval is measured.
+// masses are scaled again and the stiffness ratio of the interval is measured.
 #pragma once
 
 #include "rvelab/solver/state/state.hpp"
@@ -8,10 +8,13 @@ namespace rvelab {
 
 class EquilibriumCheck {
  public:
-  /// Begins quasi-static loading: velocities of another kind end, masses are scaled where none are.
-  explicit EquilibriumCheck(State& state);
-  /// Of a state that a trial before began so.
-  EquilibriumCheck(State& state, bool not_yet_checked) : state_(state), not_yet_checked_(not_yet_checked) {}
+  /// Of a state that prepare() was called for, or that is a copy of such a one (the trial cache): not_yet_checked is
+  /// then that of the one before.
+  explicit EquilibriumCheck(State& state, bool not_yet_checked = false)
+      : state_(state), not_yet_checked_(not_yet_checked) {}
+
+  /// Sets quasi-static loading: velocities of another kind end, masses are scaled where none are.
+  void prepare();
 
   /// Measures the unbalanced ratio. Throws as State::checked_balance.
   const OutOfBalance& check();

@@ -36,7 +36,7 @@ void turn_back(State& state) {
 /// The sub-steps of an increment, and what its checks find.
 class CheckedSteps {
  public:
-  CheckedSteps(State& state, EquilibriumCheck& check, const StrainPath& path, const Start& start)
+  CheckedSteps(State& state, EquilibriumCheck& check, const StrainPath& path, const StartUp& start)
       : state_(state),
         check_(check),
         path_(path),
@@ -141,9 +141,9 @@ void take_in_deferred(State& state, FrameSplit& increment) {
 
 /// Of an increment against the rate of strain of the last sub-step.
 struct TurnOfPath {
-  bool turns;        ///< outside of the cone of same_direction
-  bool starts_anew;  ///< no component along it, as after a stop
-  bool reverses;     ///< a component against it
+  bool turns;         ///< outside of the cone of same_direction
+  bool starts_again;  ///< no component along it, as after a stop
+  bool reverses;      ///< a component against it
 };
 TurnOfPath turn_of(double strain, const Matrix3& change, const Matrix3& rate) {
   const double along = rate.cwiseProduct(change).sum();
@@ -151,47 +151,47 @@ TurnOfPath turn_of(double strain, const Matrix3& change, const Matrix3& rate) {
 }
 
 /// What an increment finds done before its first sub-step.
-struct Begun {
+struct Prepared {
   EquilibriumCheck check;
   TurnOfPath turn;
   Relaxed relaxed;
 };
-Begun begin_increment(State& state, const Matrix3& change, double strain, Beginning beginning) {
-  const bool shared = beginning == Beginning::shared && by_tolerance(state);
-  if (shared && state.has_start()) {
-    RelaxedStart& made = state.relaxed_start();
+Prepared prepare_increment(State& state, const Matrix3& change, double strain, TrialCaching caching) {
+  const bool cached = caching == TrialCaching::on && by_tolerance(state);
+  if (cached && state.has_trial_cache()) {
+    CachedRelaxation& made = state.cached_relaxation();
     const TurnOfPath turn = turn_of(strain, change, made.rate);
     if (relaxes_alike(state.model().options, made, strain, turn.turns)) {
-      state.take_start();
+      state.take_trial_cache();
       state.count_shared(substeps_of(made));
       return {EquilibriumCheck(state, made.not_yet_checked), turn, relaxed_by(state, made)};
     }
   }
-  state.need_forces();
-  Begun begun{EquilibriumCheck(state), {}, {}};
-  begun.turn = turn_of(strain, change, state.last_step().rate);
-  if (!by_tolerance(state)) return begun;
-  // Masses that were scaled anew want a check. Where grains are held firmly and forces are what they will be, it is one
-  // of the state that trials share: at the end of each it was two fifths of a trial of 1e-6 from rest (114,000 of
+  Prepared prepared{EquilibriumCheck(state), {}, {}};
+  prepared.check.prepare();
+  prepared.turn = turn_of(strain, change, state.last_step().rate);
+  if (!by_tolerance(state)) return prepared;
+  // Masses that were scaled again want a check. Where grains are held firmly and forces are what they will be, it is
+  // one of the state that trials share: at the end of each it was two fifths of a trial of 1e-6 from rest (114,000 of
   // 300,000 instructions), and of 547 starts from rest 97.3 % were within their estimate, as 97.1 % are so.
-  const bool masses_scaled = begun.check.not_yet_checked();
+  const bool masses_scaled = prepared.check.not_yet_checked();
   if (masses_scaled && error_factor_of_start(state) <= firm_error_factor &&
       !holds_more_than_friction(state.model(), state.assembly()))
-    begun.check.check();
-  RelaxedStart relaxed_start = relaxed_start_of(state);
-  begun.relaxed = relax_before(state, begun.check, strain, begun.turn.turns, relaxed_start);
-  relaxed_start.not_yet_checked = begun.check.not_yet_checked();
+    prepared.check.check();
+  CachedRelaxation relaxation = inputs_of_relaxation(state);
+  prepared.relaxed = relax_before(state, prepared.check, strain, prepared.turn.turns, relaxation);
+  relaxation.not_yet_checked = prepared.check.not_yet_checked();
   // The longest that was made stays: it is worth most.
-  const bool worth = relaxed_start.parts() > 0 || masses_scaled;
-  if (shared && worth && !(state.has_start() && state.relaxed_start().parts() >= relaxed_start.parts()))
-    state.keep_start(std::move(relaxed_start));
-  return begun;
+  const bool worth = relaxation.parts() > 0 || masses_scaled;
+  if (cached && worth && !(state.has_trial_cache() && state.cached_relaxation().parts() >= relaxation.parts()))
+    state.keep_trial_cache(std::move(relaxation));
+  return prepared;
 }
 
 /// Notes a turn of the path, before the increment that makes it.
 void note_direction(State& state, double strain, const TurnOfPath& turn) {
   QuasiStaticControl& control = state.control();
-  if (turn.starts_anew) control.strain_since_reversal = 0;
+  if (turn.starts_again) control.strain_since_reversal = 0;
   control.strain_since_reversal = std::min(control.strain_since_reversal + strain, judged_together);
   if (by_tolerance(state) && turn.reverses) turn_back(state);
 }
@@ -204,23 +204,23 @@ void expect_substeps(const State& state, long needed) {
                         std::to_string(state.model().options.max_substeps));
 }
 
-Report load_quasi_static(State& state, FrameSplit whole, Beginning beginning) {
+Report load_quasi_static(State& state, FrameSplit whole, TrialCaching caching) {
   Report report;
   QuasiStaticControl& control = state.control();
   take_in_deferred(state, whole);
   const Matrix3 start_frame = state.cell().rotation, change = whole.stretch - Matrix3::Identity();
   const StrainPath path(whole, false);
   const double strain = path.strain();
-  Begun begun = begin_increment(state, change, strain, beginning);
-  const TurnOfPath turn = begun.turn;
-  report.substeps += begun.relaxed.steps;
+  Prepared prepared = prepare_increment(state, change, strain, caching);
+  const TurnOfPath turn = prepared.turn;
+  report.substeps += prepared.relaxed.steps;
   const Matrix3 stress_before = state.stress();
   note_direction(state, strain, turn);
 
   const double elastic_change = elastic_stress_change(state, std::max(strain, control.strain_since_reversal));
   set_target_ratio(state, target_ratio(state, elastic_change));
-  const Start start = start_of(state, change, strain, elastic_change, turn.reverses);
-  CheckedSteps substeps(state, begun.check, path, start);
+  const StartUp start = start_up_of(state, change, strain, elastic_change, turn.reverses);
+  CheckedSteps substeps(state, prepared.check, path, start);
   substeps.make(report.substeps);
   if (!state.stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
@@ -231,7 +231,7 @@ Report load_quasi_static(State& state, FrameSplit whole, Beginning beginning) {
   judge_equilibrium(state, report, start.start_error_factor > 0 ? start.unbalanced_ratio : 0);
   const JudgedIncrement judged{.strain = strain,
                                .unbalanced_ratio = control.unbalanced_ratio,
-                               .creep_error = begun.relaxed.creep,
+                               .creep_error = prepared.relaxed.creep,
                                .start_error_factor = start.start_error_factor,
                                .events = substeps.events().happened(state),
                                .broken_stress = substeps.events().broken_stress(state)};
@@ -271,7 +271,7 @@ long apply_deferred(State& state) {
   if (!state.has_deferred()) return 0;
   const FrameSplit deferred{Matrix3::Identity(), state.control().deferred.stretch, false};
   state.set_deferred(Matrix3::Identity());
-  return load_quasi_static(state, deferred, Beginning::own).substeps;
+  return load_quasi_static(state, deferred, TrialCaching::off).substeps;
 }
 
 }  // namespace rvelab

@@ -8,16 +8,17 @@
 
 namespace rvelab {
 
-/// Whether a trial begins where others of its committed state did (state/start.hpp), and leaves them where it did.
-enum class Beginning { own, shared };
+/// Whether an increment begins where trials of the same committed state did, and leaves them where it did
+/// (state/trial_cache.hpp).
+enum class TrialCaching { off, on };
 /// Applies the increment together with any deferred strain. Throws IncrementFailed.
-Report load_quasi_static(State& state, FrameSplit increment, Beginning beginning);
+Report load_quasi_static(State& state, FrameSplit increment, TrialCaching caching);
 /// A rotation: grains and stress turn with the frame of the cell.
 Report load_rotation(State& state, const FrameSplit& increment, const Matrix3& displacement_gradient);
 /// Applies the deferred strain; the number of sub-steps.
 long apply_deferred(State& state);
 /// A mixed target (stress_control.cpp); `gradient` is what was found. Throws as Rve::apply says.
-Report load_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient);
+Report follow_target_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient);
 /// Rve::relax (relaxation.cpp).
 Report relax(State& state, double unbalanced, long max_steps);
 

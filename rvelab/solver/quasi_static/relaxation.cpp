@@ -15,7 +15,7 @@ using namespace constants;
 
 namespace {
 
-constexpr long part = check_interval / 2;  ///< sub-steps of a relaxation between two looks
+constexpr long part = check_interval / 2;  ///< sub-steps of a relaxation between two checks
 
 void advance_fixed_cell(State& state, long steps) {
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
@@ -27,7 +27,7 @@ double change_at_rest(State& state) {
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   Assembly copy = state.assembly();
   const Matrix3 before = contact_virial(state.model(), copy) / copy.cell.volume();
-  advance(state.model(), copy, {still, creep_steps, 1, Loading::quasi_static});
+  make_substeps(state.model(), copy, {still, creep_steps, 1, Loading::quasi_static});
   state.count(creep_steps);
   return (contact_virial(state.model(), copy) / copy.cell.volume() - before).norm();
 }
@@ -38,6 +38,7 @@ Report relax(State& state, double unbalanced, long max_steps) {
   Report report;
   const long deferred = apply_deferred(state);
   EquilibriumCheck check(state);
+  check.prepare();
   state.control().deferred.stress_slope.setZero();
   while (true) {
     check.check();
@@ -59,7 +60,7 @@ Report relax(State& state, double unbalanced, long max_steps) {
 namespace {
 
 /// Error that an increment allows the state before it, Pa; none: it goes on from the state as it is.
-std::optional<double> allowed_before(const SolverOptions& o, const RelaxedStart& s, double strain, bool turns) {
+std::optional<double> allowed_before(const SolverOptions& o, const CachedRelaxation& s, double strain, bool turns) {
   const double so_far = s.strain_since_reversal;
   const double path = turns ? so_far : std::max(strain, std::min(so_far + strain, judged_together));
   const double elastic_change = s.network_stiffness * path;
@@ -71,15 +72,15 @@ std::optional<double> allowed_before(const SolverOptions& o, const RelaxedStart&
 }
 
 /// Whether it goes on after so many parts.
-bool goes_on(const RelaxedStart& s, std::size_t parts, double allowed) {
+bool goes_on(const CachedRelaxation& s, std::size_t parts, double allowed) {
   return long(parts) * part < most_steps_before_turn && s.error[parts] > (parts > 0 ? 1 / step_margin : 1) * allowed;
 }
 
 }  // namespace
 
-RelaxedStart relaxed_start_of(State& state) {
+CachedRelaxation inputs_of_relaxation(State& state) {
   const QuasiStaticControl& control = state.control();
-  RelaxedStart s;
+  CachedRelaxation s;
   s.rate = state.last_step().rate;
   s.strain_since_reversal = control.strain_since_reversal;
   s.network_stiffness = control.interval.network_stiffness;
@@ -91,20 +92,20 @@ RelaxedStart relaxed_start_of(State& state) {
   return s;
 }
 
-Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns, RelaxedStart& relaxed_start) {
-  const std::optional<double> allowed = allowed_before(state.model().options, relaxed_start, strain, turns);
+Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns, CachedRelaxation& relaxation) {
+  const std::optional<double> allowed = allowed_before(state.model().options, relaxation, strain, turns);
   if (!allowed) return {};
-  relaxed_start.error.push_back(expected_error(state, state.control().unbalanced_ratio));
-  while (goes_on(relaxed_start, relaxed_start.parts(), *allowed)) {
-    relaxed_start.stress.push_back(state.stress());
+  relaxation.error.push_back(expected_error(state, state.control().unbalanced_ratio));
+  while (goes_on(relaxation, relaxation.parts(), *allowed)) {
+    relaxation.stress.push_back(state.stress());
     advance_fixed_cell(state, part);
     check.check();
-    relaxed_start.error.push_back(expected_error(state, state.control().unbalanced_ratio));
+    relaxation.error.push_back(expected_error(state, state.control().unbalanced_ratio));
   }
-  return relaxed_by(state, relaxed_start);
+  return relaxed_by(state, relaxation);
 }
 
-bool relaxes_alike(const SolverOptions& options, const RelaxedStart& made, double strain, bool turns) {
+bool relaxes_alike(const SolverOptions& options, const CachedRelaxation& made, double strain, bool turns) {
   const std::optional<double> allowed = allowed_before(options, made, strain, turns);
   if (!allowed) return made.parts() == 0;
   std::size_t parts = 0;
@@ -112,11 +113,11 @@ bool relaxes_alike(const SolverOptions& options, const RelaxedStart& made, doubl
   return parts == made.parts() && !goes_on(made, parts, *allowed);
 }
 
-long substeps_of(const RelaxedStart& made) {
+long substeps_of(const CachedRelaxation& made) {
   return long(made.parts()) * part + (made.creep_of_rolling < 0 ? 0 : creep_steps);
 }
 
-Relaxed relaxed_by(State& state, RelaxedStart& made) {
+Relaxed relaxed_by(State& state, CachedRelaxation& made) {
   Relaxed relaxed;
   if (made.parts() == 0) return relaxed;
   relaxed.steps = long(made.parts()) * part;

@@ -86,7 +86,7 @@ double most_substeps(State& state, double strain) {
   return std::max(strictness * (most_steps + most_steps_of_overlap * overlaps), 1.0);
 }
 
-Start start_of(State& state, const Matrix3& change, double strain, double elastic_change, bool turned_back) {
+StartUp start_up_of(State& state, const Matrix3& change, double strain, double elastic_change, bool turned_back) {
   const QuasiStaticControl& control = state.control();
   if (!by_tolerance(state)) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
   if (!(control.interval.network_stiffness > 0)) return {1, 0};

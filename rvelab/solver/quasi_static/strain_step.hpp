@@ -20,13 +20,13 @@ double most_substeps(State& state, double strain);
 
 /// Sub-steps that an increment takes at least, since its rate is not that of the sub-step before, and the unbalanced
 /// ratio that they leave.
-struct Start {
+struct StartUp {
   double substeps = 1, unbalanced_ratio = 0;
   /// K of a start from rest in the elastic range, made in exactly `substeps` sub-steps with little damping; 0: any
   /// other increment, for which `substeps` is a lower bound.
   double start_error_factor = 0;
 };
 /// `change` is stretch - I, `strain` its Green strain; `elastic_change` (|C : d eps|, Pa) that of the path.
-Start start_of(State& state, const Matrix3& change, double strain, double elastic_change, bool turned_back);
+StartUp start_up_of(State& state, const Matrix3& change, double strain, double elastic_change, bool turned_back);
 
 }  // namespace rvelab

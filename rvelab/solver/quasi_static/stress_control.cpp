@@ -115,6 +115,7 @@ Report StressControl::judged() {
 }
 
 Report StressControl::make(Matrix3& gradient) {
+  check_.prepare();
   while (true) {
     report_.held_error = servo_.largest_error(servo_.residual(fraction_, path_.strain, stress()));
     if (fraction_ >= 1 && report_.held_error <= target_.tolerance) break;
@@ -146,7 +147,7 @@ Report StressControl::make(Matrix3& gradient) {
 
 }  // namespace
 
-Report load_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient) {
+Report follow_target_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient) {
   return StressControl(state, target).make(gradient);
 }
 

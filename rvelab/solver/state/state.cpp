@@ -78,20 +78,20 @@ void State::set_missing_references() {
 
 const Matrix3& State::stress() {
   return derived_.stress.of(derived_.generation,
-                            [this] { return Matrix3(-contact_virial(model_, assembly_) / cell().volume()); });
+                            [this] { return Matrix3(-contact_virial(model_, assembly()) / cell().volume()); });
 }
 
 const OutOfBalance& State::out_of_balance() {
-  return derived_.balance.of(derived_.generation, [this] { return balance_of(model_, assembly_); });
+  return derived_.balance.of(derived_.generation, [this] { return balance_of(model_, assembly()); });
 }
 
 const InteractionSums& State::interaction_sums() {
   return derived_.interaction_sums.of(derived_.generation,
-                                      [this] { return rvelab::interaction_sums(model_, assembly_); });
+                                      [this] { return rvelab::interaction_sums(model_, assembly()); });
 }
 
 const RowSums& State::row_sums() {
-  return sums_.of(derived_.generation, [this] { return rvelab::row_sums(model_, assembly_); });
+  return sums_.of(derived_.generation, [this] { return rvelab::row_sums(model_, assembly()); });
 }
 
 const OutOfBalance& State::checked_balance() {
@@ -117,15 +117,15 @@ Matrix3 State::reynolds_stress() const {
 }
 
 Advanced State::advance(const Advance& what) {
-  const Advanced made = rvelab::advance(model_, change(), what);
+  const Advanced made = make_substeps(model_, change(), what);
   count(made.steps);
   return made;
 }
 
-void State::begin_loading(Loading loading) {
+void State::set_loading(Loading loading) {
   // Where the kind of loading changes dashpot forces vanish; the stress does not depend on masses.
   const bool changes = last_step().loading != loading;
-  rvelab::begin_loading(model_, changes ? change() : assembly_, loading);
+  rvelab::set_loading(model_, changes ? change() : assembly_, loading);
 }
 
 void State::turn(const Matrix3& frame_rotation) {
@@ -167,7 +167,7 @@ void State::set_materials(const std::vector<Material>& materials) {
 }
 
 void State::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  begin_loading(Loading::at_rate);
+  set_loading(Loading::at_rate);
   Assembly& assembly = change();
   for (std::size_t row = 0; row < model_.size(); ++row)
     assembly.set_velocity(model_, row, velocity[index_in_specimen(row)], spin[index_in_specimen(row)]);
@@ -189,6 +189,7 @@ void State::take_as_reference() {
 }
 
 void State::begin_trial(Trial::Changes changes) {
+  if (changes == Trial::Changes::deferred_strain) evaluate_stale_forces();  // it moves no grain: they stay
   trial_.begin(assembly_, changes);
   of_other_ = derived_;
 }
@@ -197,17 +198,17 @@ void State::exchange_but_forces() noexcept {
   trial_.exchange(assembly_);
   std::swap(derived_, of_other_);
   set_strained_cell();
-  forces_due_ = trial_.changes() == Trial::Changes::grains && !released_;
+  forces_are_stale_ = trial_.changes() == Trial::Changes::grains && !released_;
 }
 
-void State::need_forces() noexcept {
-  if (forces_due_) evaluate_forces_anew(model_, assembly_);
-  forces_due_ = false;
+void State::evaluate_forces_again() noexcept {
+  rvelab::evaluate_forces_again(model_, assembly_);
+  forces_are_stale_ = false;
 }
 
 void State::exchange() noexcept {
   exchange_but_forces();
-  need_forces();
+  evaluate_stale_forces();
 }
 
 void State::revert() noexcept {
@@ -222,7 +223,7 @@ void State::revert_but_forces() noexcept {
 
 void State::commit() noexcept {
   end_trial();
-  drop_start();
+  drop_trial_cache();
 }
 
 void State::end_trial() noexcept {
@@ -230,24 +231,25 @@ void State::end_trial() noexcept {
   if (released_ || model_.size() > largest_kept_trial) trial_.release();
 }
 
-void State::keep_start(RelaxedStart relaxed_start) noexcept {
+void State::keep_trial_cache(CachedRelaxation relaxation) noexcept {
   if (model_.size() > largest_kept_trial) return;
-  start_.keep(assembly_, trial_.other_cell().lattice, std::move(relaxed_start));
-  of_start_ = derived_;
+  cache_.keep(assembly(), trial_.other_cell().lattice, std::move(relaxation));
+  of_cache_ = derived_;
 }
 
-void State::take_start() {
-  start_.take_over(assembly_);
-  derived_ = of_start_;
-  forces_due_ = false;
+void State::take_trial_cache() {
+  cache_.take_over(assembly_);
+  derived_ = of_cache_;
+  forces_are_stale_ = false;
   set_strained_cell();
 }
 
 void State::release() {
   put_masses_into_rows(model_, assembly_);
   sums_ = {};
-  start_ = {};
+  cache_ = {};
   released_ = true;
+  forces_are_stale_ = false;  // allocate evaluates them
   if (pending()) {
     exchange();
     put_masses_into_rows(model_, assembly_);  // often the same as those of the trial: released after both
@@ -269,7 +271,7 @@ Memory State::memory() const {
   const RowSums& sums = sums_.last();
   for (const auto* each : {&sums.translation, &sums.rotation, &sums.dashpot})
     memory.working += each->capacity() * sizeof(double);
-  (pending() ? memory.trial : memory.working) += trial_.bytes() + start_.bytes();
+  (pending() ? memory.trial : memory.working) += trial_.bytes() + cache_.bytes();
   return memory;
 }
 

@@ -9,8 +9,8 @@
 #include "rvelab/solver/loading/report.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
 #include "rvelab/solver/loading/velocities.hpp"
-#include "rvelab/solver/state/start.hpp"
 #include "rvelab/solver/state/trial.hpp"
+#include "rvelab/solver/state/trial_cache.hpp"
 
 namespace rvelab {
 
@@ -50,10 +50,18 @@ class State {
   explicit State(const Specimen& specimen);
 
   const Model& model() const { return model_; }
+  /// Its forces are those of this state: where they are stale they are evaluated first. A const State cannot do that;
+  /// has_forces says whether they are.
+  const Assembly& assembly() {
+    evaluate_stale_forces();
+    return assembly_;
+  }
   const Assembly& assembly() const { return assembly_; }
+  bool has_forces() const { return !released_ && !forces_are_stale_; }
   const Cell& cell() const { return assembly_.cell; }
   /// To change grains, contacts, cell or references: raises the generation.
   Assembly& change() {
+    evaluate_stale_forces();
     derived_.generation = ++last_generation_;
     return assembly_;
   }
@@ -86,7 +94,7 @@ class State {
   }
 
   Matrix3 to_lab(const Matrix3& cell_frame) const { return cell().rotation * cell_frame * cell().rotation.transpose(); }
-  Matrix3 contact_stress() const;   ///< laboratory frame, Pa; derived anew
+  Matrix3 contact_stress() const;   ///< laboratory frame, Pa; not kept
   Matrix3 reynolds_stress() const;  ///< laboratory frame, Pa; zero in quasi-static loading
   /// A cell height is below four mean diameters.
   bool is_thin(const Cell& cell) const { return heights(cell).minCoeff() < 8 * model_.mean_radius; }
@@ -94,7 +102,7 @@ class State {
   /// Makes sub-steps (loading/stepping.hpp).
   Advanced advance(const Advance& what);
   /// Velocities, masses and spins for a kind of loading (loading/velocities.hpp).
-  void begin_loading(Loading loading);
+  void set_loading(Loading loading);
   /// Masses of quasi-static loading from the present row sums; the second books the change of kinetic energy.
   void scale_masses() { scale_inertia(model_, row_sums(), assembly_); }
   void rescale_masses() { rescale_inertia(model_, row_sums(), assembly_); }
@@ -131,17 +139,17 @@ class State {
   bool pending() const { return trial_.pending(); }
   void exchange() noexcept;
   void revert() noexcept;
-  /// The same before another trial: forces are those of the committed state once need_forces or take_start was called.
+  /// The same before another trial, which may begin with the forces of the cache: until then, or until they are used,
+  /// they are stale.
   void revert_but_forces() noexcept;
-  void need_forces() noexcept;
   void commit() noexcept;  ///< what is here is the state, and no trial is pending
 
-  // What trials of this committed state begin with (start.hpp); until the state is another.
-  bool has_start() const { return start_.kept(); }
-  RelaxedStart& relaxed_start() { return start_.relaxed_start(); }
-  void keep_start(RelaxedStart relaxed_start) noexcept;
-  void take_start();
-  void drop_start() noexcept { start_.drop(); }
+  // What trials of this committed state begin with (trial_cache.hpp); until the state is another.
+  bool has_trial_cache() const { return cache_.kept(); }
+  CachedRelaxation& cached_relaxation() { return cache_.cached_relaxation(); }
+  void keep_trial_cache(CachedRelaxation relaxation) noexcept;
+  void take_trial_cache();
+  void drop_trial_cache() noexcept { cache_.drop(); }
 
   /// Releases what can be made again, of both states of a pending trial; allocate makes it again.
   void release();
@@ -160,6 +168,10 @@ class State {
   };
 
   void set_missing_references();
+  void evaluate_stale_forces() noexcept {
+    if (forces_are_stale_) evaluate_forces_again();
+  }
+  void evaluate_forces_again() noexcept;
   void set_strained_cell();
   void exchange_but_forces() noexcept;
   void end_trial() noexcept;
@@ -167,12 +179,12 @@ class State {
   Model model_;
   Assembly assembly_;
   Trial trial_;
-  SharedStart start_;
-  bool released_ = false, forces_due_ = false;
+  TrialCache cache_;
+  bool released_ = false, forces_are_stale_ = false;
   Cell strained_cell_;
   std::uint64_t grain_steps_made_ = 0, grain_steps_shared_ = 0;
   std::uint64_t last_generation_ = 1;
-  DerivedValues derived_, of_other_, of_start_;  ///< of_other_: of the state of a pending trial not in `assembly_`
+  DerivedValues derived_, of_other_, of_cache_;  ///< of_other_: of the state of a pending trial not in `assembly_`
   Derived<RowSums> sums_;
 };
 

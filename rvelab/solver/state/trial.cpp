@@ -40,7 +40,7 @@ void Trial::begin(Assembly& assembly, Changes changes) {
 void Trial::end(Assembly& assembly) noexcept {
   assembly.trial.replaced = nullptr;
   pending_ = false;
-  // A list is made anew every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
+  // A list is made again every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
   if (replaced_.list_taken) {
     replaced_.list = PairTable();
     replaced_.list_positions = {};
@@ -77,7 +77,7 @@ void Trial::exchange(Assembly& assembly) noexcept {
   }
 }
 
-void evaluate_forces_anew(const Model& model, Assembly& assembly) noexcept {
+void evaluate_forces_again(const Model& model, Assembly& assembly) noexcept {
   std::fill(assembly.pairs.touched.begin(), assembly.pairs.touched.end(), 1);
   evaluate_forces(model, assembly);
 }

@@ -28,8 +28,8 @@ class Trial {
   void begin(Assembly& assembly, Changes changes);
   Changes changes() const { return changes_; }
   /// The committed state and that of the trial change places, bit for bit; once more, and they are where they were.
-  /// Allocates nothing. Forces are those of before: if grains changed they are to be evaluated anew
-  /// (evaluate_forces_anew).
+  /// Allocates nothing. Forces are those of before: if grains changed they are stale until
+  /// evaluate_forces_again.
   void exchange(Assembly& assembly) noexcept;
   /// That of the state which is not in the assembly.
   const Cell& other_cell() const { return cell_; }
@@ -55,6 +55,6 @@ class Trial {
 };
 
 /// Forces of a state that took the place of another: no pair is passed over because it did not touch there.
-void evaluate_forces_anew(const Model& model, Assembly& assembly) noexcept;
+void evaluate_forces_again(const Model& model, Assembly& assembly) noexcept;
 
 }  // namespace rvelab

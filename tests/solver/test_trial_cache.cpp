@@ -133,18 +133,18 @@ const Matrix3 probe = gradient(0, 1e-6, 0, -0.5e-6);
 
 TEST_CASE("What trials share is gone with their committed state") {
   Rve rve = after_large_steps();
-  CHECK(!rve.shares_start());
+  CHECK(!rve.has_trial_cache());
   rve.attempt(probe, 0);
-  REQUIRE(rve.shares_start());
-  CHECK(!Rve(rve).shares_start());
+  REQUIRE(rve.has_trial_cache());
+  CHECK(!Rve(rve).has_trial_cache());
   rve.revert();
-  CHECK(rve.shares_start());
+  CHECK(rve.has_trial_cache());
   rve.release();
-  CHECK(!rve.shares_start());
+  CHECK(!rve.has_trial_cache());
   rve.attempt(probe, 0);
-  CHECK(rve.shares_start());
+  CHECK(rve.has_trial_cache());
   rve.commit();
-  CHECK(!rve.shares_start());
+  CHECK(!rve.has_trial_cache());
 }
 
 TEST_CASE("Fifty probes after large steps settle once") {

@@ -11,7 +11,7 @@ namespace rvelab {
 
 /// What an increment's relaxation depends on and was, by which another increment knows whether it would make the same
 /// (quasi_static/relaxation.hpp).
-struct RelaxedStart {
+struct CachedRelaxation {
   // Of the state before its first sub-step.
   Matrix3 rate = Matrix3::Zero();  ///< of the last sub-step, 1/step
   double strain_since_reversal = 0, network_stiffness = 0, stiffness_ratio = 1;
@@ -27,20 +27,20 @@ struct RelaxedStart {
   std::size_t parts() const { return stress.size(); }
 };
 
-class SharedStart {
+class TrialCache {
  public:
-  SharedStart() = default;
+  TrialCache() = default;
   /// A copied RVE has none, and keeps one of its own.
-  SharedStart(const SharedStart&) noexcept {}
-  SharedStart& operator=(const SharedStart&) = delete;
-  SharedStart(SharedStart&&) = default;
-  SharedStart& operator=(SharedStart&&) = default;
+  TrialCache(const TrialCache&) noexcept {}
+  TrialCache& operator=(const TrialCache&) = delete;
+  TrialCache(TrialCache&&) = default;
+  TrialCache& operator=(TrialCache&&) = default;
 
   bool kept() const { return kept_; }
-  RelaxedStart& relaxed_start() { return relaxed_start_; }
+  CachedRelaxation& cached_relaxation() { return relaxation_; }
   /// Copies what a trial has made of the committed state so far. Not if memory is short, nor where the lattice was
   /// reduced meanwhile: an increment was split in the frame before.
-  void keep(const Assembly& assembly, const Matrix3& committed_lattice, RelaxedStart relaxed_start) noexcept;
+  void keep(const Assembly& assembly, const Matrix3& committed_lattice, CachedRelaxation relaxation) noexcept;
   /// Into a trial of the same committed state that has just begun: what keep() found, forces too.
   void take_over(Assembly& assembly) const;
   void drop() noexcept { kept_ = false; }
@@ -48,11 +48,11 @@ class SharedStart {
 
  private:
   bool kept_ = false, own_list_ = false, own_masses_ = false;
-  RelaxedStart relaxed_start_;
+  CachedRelaxation relaxation_;
   Cell cell_;
   Buffer rows_, mass_, inverse_mass_, inverse_inertia_;
   BodyMotions bodies_;
-  PairTable list_;               ///< where it was made anew, else empty
+  PairTable list_;               ///< where it was made again, else empty
   std::vector<Buffer> changed_;  ///< of the committed list: what sub-steps change
   std::vector<std::uint8_t> touched_;
   SolverState state_;

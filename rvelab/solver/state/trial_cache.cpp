@@ -1,4 +1,4 @@
-#include "rvelab/solver/state/start.hpp"
+#include "rvelab/solver/state/trial_cache.hpp"
 
 #include <new>
 #include <utility>
@@ -25,13 +25,13 @@ void each_changed(Pairs& pairs, const Each& each) {
 
 }  // namespace
 
-void SharedStart::keep(const Assembly& assembly, const Matrix3& committed_lattice,
-                       RelaxedStart relaxed_start) noexcept {
+void TrialCache::keep(const Assembly& assembly, const Matrix3& committed_lattice,
+                      CachedRelaxation relaxation) noexcept {
   kept_ = false;
   const Replaced* replaced = assembly.trial.replaced;
   if (replaced == nullptr || !(assembly.cell.lattice.array() == committed_lattice.array()).all()) return;
   try {
-    relaxed_start_ = std::move(relaxed_start);
+    relaxation_ = std::move(relaxation);
     cell_ = assembly.cell;
     rows_ = assembly.rows;
     bodies_ = assembly.bodies;
@@ -56,11 +56,11 @@ void SharedStart::keep(const Assembly& assembly, const Matrix3& committed_lattic
     }
     kept_ = true;
   } catch (const std::bad_alloc&) {
-    *this = SharedStart();
+    *this = TrialCache();
   }
 }
 
-void SharedStart::take_over(Assembly& assembly) const {
+void TrialCache::take_over(Assembly& assembly) const {
   Replaced& replaced = *assembly.trial.replaced;
   // What may ask for memory comes first.
   SolverState state = state_;
@@ -92,7 +92,7 @@ void SharedStart::take_over(Assembly& assembly) const {
   replaced.masses_taken = true;
 }
 
-std::size_t SharedStart::bytes() const {
+std::size_t TrialCache::bytes() const {
   std::size_t sum = bytes_of(list_) + bytes_of(bodies_) + touched_.capacity() +
                     state_.list.positions.capacity() * sizeof(Vector3) +
                     state_.memory_order.capacity() * sizeof(std::int32_t);
