@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "rvelab/h5/file_calls.hpp"
 #include "rvelab/pool/floating_point.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
 #include "rvelab/threads/classic_locale.hpp"
@@ -63,12 +64,11 @@ std::int32_t of_pool(rvelab_pool* handle, std::initializer_list<Needed> needed, 
 Specimen read_specimen(const std::string& path);
 void write_pool(pool::Pool& pool, const std::string& path);
 void read_pool(pool::Pool& pool, const std::string& path);
-std::string parameters_text(const Specimen& specimen);
-/// InputError as keys::set_parameters.
-void set_parameters(Specimen& specimen, const std::string& text);
-/// As h5::check_stages and h5::run_stages.
-void check_stages(const std::string& text);
-std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop);
+/// All that the library does.
+const h5::FileCalls& file_calls();
+/// The same, where a text is to be read: toml++ ends the process where memory runs out while it unwinds, so what it
+/// will take is asked for before.
+const h5::FileCalls& text_calls(const std::string& text);
 
 // librvelab.so makes the share of a rank for librvelab-mpi.so, of the same version, and hands its pool to the host. No
 // part of the interface of the host.

@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "rvelab/abi/c_boundary.hpp"
-#include "rvelab/h5/file_calls.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab::abi {
@@ -39,6 +38,8 @@ std::string own_folder() {
   const auto stroke = name.rfind('/');
   return stroke == std::string::npos ? std::string() : name.substr(0, stroke + 1);
 }
+
+}  // namespace
 
 const h5::FileCalls& file_calls() {
   const std::lock_guard lock(library_mutex);
@@ -76,6 +77,8 @@ const h5::FileCalls& file_calls() {
   return *calls;
 }
 
+namespace {
+
 /// Makes a call on a file. All its faults have one status, and what is wrong with a state is wrong with its file.
 template <class Call>
 auto of_file(const Call& call) {
@@ -99,28 +102,9 @@ Specimen read_specimen(const std::string& path) {
   return of_file([&](const h5::FileCalls& calls) { return calls.read_specimen(path); });
 }
 
-std::string parameters_text(const Specimen& specimen) { return file_calls().parameters_text(specimen); }
-
-namespace {
-
-/// toml++ ends the process where memory runs out while it unwinds, so what it will take is asked for before.
-void expect_memory_for(const std::string& text) { ::operator delete(::operator new((1 << 20) + 100 * text.size())); }
-
-}  // namespace
-
-void set_parameters(Specimen& specimen, const std::string& text) {
-  expect_memory_for(text);
-  file_calls().set_parameters(specimen, text);
-}
-
-void check_stages(const std::string& text) {
-  expect_memory_for(text);
-  file_calls().check_stages(text);
-}
-
-std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop) {
-  expect_memory_for(text);
-  return file_calls().run_stages(specimen, text, stop);
+const h5::FileCalls& text_calls(const std::string& text) {
+  ::operator delete(::operator new((1 << 20) + 100 * text.size()));
+  return file_calls();
 }
 
 void write_pool(pool::Pool& pool, const std::string& path) {

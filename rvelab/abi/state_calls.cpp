@@ -114,7 +114,8 @@ int32_t rvelab_get_info(rvelab_pool* handle, int64_t id, rvelab_info* info) {
 int32_t rvelab_get_parameters(rvelab_pool* handle, int64_t id, char* text, size_t cap, size_t* need) {
   return of_pool(
       handle, {{need, "need"}, {cap > 0 ? text : static_cast<const void*>(need), "text"}}, [&](pool::Pool& rves) {
-        const std::string found = parameters_text(pool::rve_state_of(rves.at<&pool::Share::save>(id)).specimen);
+        const std::string found =
+            file_calls().parameters_text(pool::rve_state_of(rves.at<&pool::Share::save>(id)).specimen);
         copy_out("get_parameters", std::as_bytes(std::span(found.c_str(), found.size() + 1)), text, cap, need);
       });
 }
@@ -122,7 +123,7 @@ int32_t rvelab_get_parameters(rvelab_pool* handle, int64_t id, char* text, size_
 int32_t rvelab_set_parameters(rvelab_pool* handle, int64_t id, const char* toml) {
   return of_pool(handle, {{toml, "toml"}}, [&](pool::Pool& rves) {
     change(rves, id, [&](pool::RveState& state) {
-      set_parameters(state.specimen, toml);
+      text_calls(toml).set_parameters(state.specimen, toml);
       return std::int64_t(0);
     });
   });
@@ -132,11 +133,11 @@ int32_t rvelab_run_stages(rvelab_pool* handle, int64_t n, const int64_t* ids, co
                           int32_t* status) {
   return of_pool(handle, {{toml, "toml"}}, [&](pool::Pool& rves) {
     const auto asked = ids_of(n, ids);
-    check_stages(toml);
+    text_calls(toml).check_stages(toml);
     return pool::each_entry(rves, "run_stages", n, asked.data(), status, [&](std::size_t m, pool::Verdict&) {
       change(rves, asked[m], [&](pool::RveState& state) {
         state.last.inertial_number = 0;
-        return run_stages(state.specimen, toml, rves.interrupted());
+        return text_calls(toml).run_stages(state.specimen, toml, rves.interrupted());
       });
       if (sigma == nullptr) return;
       const rvelab_info info = rves.at<&pool::Share::info>(asked[m]);

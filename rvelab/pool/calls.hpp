@@ -1,10 +1,12 @@
-// Calls of a share of the pool as values: in this process the call is made, between processes its number, arguments and
-// result travel as bytes. Any virtual function of Share can be called so that stands in ShareCalls (threaded_pool.hpp).
+// Calls of a share of the pool as values: in this process the call is made, between processes its name, arguments and
+// result travel as bytes. Any member of Share can be called so, and any function whose first argument is a Share&.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <tuple>
+#include <typeinfo>
 #include <utility>
 
 #include "rvelab/pool/message.hpp"
@@ -49,11 +51,9 @@ struct Travel<std::span<const Value>> {
   }
 };
 
-/// A member function by its parts: `put` writes its arguments, `serve` reads them, calls it and writes its result.
-template <class Function>
-struct Signature;
-template <class Class, class Returned, class... Arguments>
-struct Signature<Returned (Class::*)(Arguments...)> {
+/// A function by its parts: `put` writes its arguments, `serve` reads them, calls it and writes its result.
+template <class Returned, class... Arguments>
+struct SignatureBy {
   using Result = Returned;
 
   static void put(Packer& to, const std::decay_t<Arguments>&... arguments) {
@@ -63,72 +63,100 @@ struct Signature<Returned (Class::*)(Arguments...)> {
   static void serve(Share& share, Unpacker& given, Packer& found) {
     std::tuple<decltype(Travel<std::decay_t<Arguments>>::take(given))...> arguments{
         Travel<std::decay_t<Arguments>>::take(given)...};  // braces: in their order
-    const auto call = [&](auto&... each) -> Result { return (share.*function)(std::move(each)...); };
+    const auto call = [&](auto&... each) -> Result { return std::invoke(function, share, std::move(each)...); };
     if constexpr (std::is_void_v<Result>)
       std::apply(call, arguments);
     else
       Travel<Result>::put(found, std::apply(call, arguments));
   }
 };
+template <class Function>
+struct Signature;
 template <class Class, class Returned, class... Arguments>
-struct Signature<Returned (Class::*)(Arguments...) noexcept> : Signature<Returned (Class::*)(Arguments...)> {};
+struct Signature<Returned (Class::*)(Arguments...)> : SignatureBy<Returned, Arguments...> {};
+template <class Class, class Returned, class... Arguments>
+struct Signature<Returned (Class::*)(Arguments...) noexcept> : SignatureBy<Returned, Arguments...> {};
+template <class Returned, class... Arguments>
+struct Signature<Returned (*)(Share&, Arguments...)> : SignatureBy<Returned, Arguments...> {};
 
 template <auto function>
 using SignatureOf = Signature<decltype(function)>;
 template <auto function>
 using ResultOf = typename SignatureOf<function>::Result;
 
-/// Member functions that travel; the place of each is its number in a message.
-template <auto... functions>
-class CallList {
+/// A function under the name by which the share of another rank finds it. It stands in no list: to be called by
+/// Pool::at or Pool::everywhere makes it known.
+class NamedCall {
  public:
-  template <auto wanted>
-  static constexpr std::int32_t number() {
-    std::int32_t at = 0, found = -1;
-    ((std::is_same_v<Name<wanted>, Name<functions>> ? found = at++ : at++), ...);
-    return found;
-  }
-  /// Number and arguments.
-  template <auto function, class... Arguments>
-  static void put(Packer& to, const Arguments&... arguments) {
-    static_assert(number<function>() >= 0, "the function is missing in the list of calls");
-    to.put(number<function>());
-    SignatureOf<function>::put(to, arguments...);
-  }
-  /// Calls the function of that number.
-  static void serve(std::int32_t number, Share& share, Unpacker& given, Packer& found) {
-    std::int32_t at = 0;
-    const bool known =
-        ((at++ == number && (SignatureOf<functions>::template serve<functions>(share, given, found), true)) || ...);
-    if (!known) throw Refused(Status::internal, "a message between ranks has an unknown number: please report this");
+  using Serve = void (*)(Share&, Unpacker& given, Packer& found);
+
+  NamedCall(const char* name, Serve serve) noexcept : name_(name), serve_(serve), next_(std::exchange(last, this)) {}
+  NamedCall(const NamedCall&) = delete;
+  NamedCall& operator=(const NamedCall&) = delete;
+
+  const char* name() const { return name_; }
+  static void serve(std::string_view name, Share& share, Unpacker& given, Packer& found) {
+    for (const NamedCall* call = last; call != nullptr; call = call->next_)
+      if (name == call->name_) return call->serve_(share, given, found);
+    throw Refused(Status::internal, "a message between ranks has an unknown name: please report this");
   }
 
  private:
-  template <auto>
-  struct Name;
+  inline static const NamedCall* last = nullptr;
+
+  const char* name_;
+  Serve serve_;
+  const NamedCall* next_;
 };
 
-/// A call on its way to the share that makes it: made there, or its number and arguments and then its result as bytes.
-struct TravellingCall {
-  std::function<void(Share&)> make;
-  std::function<void(Packer&)> put;
-  std::function<void(Unpacker&)> take_result;
+template <auto function>
+struct NameOf;
+/// All ranks are of one version, so that a function has the same name on each.
+template <auto function>
+inline const NamedCall named_call{typeid(NameOf<function>*).name(), &SignatureOf<function>::template serve<function>};
+
+/// In the place of the number of a message: the name of a function follows.
+inline constexpr std::int32_t call_by_name = -4;
+
+/// A call on its way to the share that makes it: made there, or its name and arguments and then its result as bytes.
+class TravellingCall {
+ public:
+  virtual void make(Share& share) = 0;
+  virtual void put(Packer& to) const = 0;
+  virtual void take_result(Unpacker& from) = 0;
+
+ protected:
+  ~TravellingCall() = default;
 };
 
-/// The call of one function in `Calls`, by `way`(call); its result.
-template <class Calls, auto function, class Way, class... Given>
-ResultOf<function> travelled(const Way& way, const Given&... given) {
+/// The call of one function, and its result.
+template <auto function, class... Given>
+class CallOf final : public TravellingCall {
+ public:
   using Result = ResultOf<function>;
-  if constexpr (std::is_void_v<Result>) {
-    way({[&](Share& share) { (share.*function)(given...); },
-         [&](Packer& to) { Calls::template put<function>(to, given...); }, [](Unpacker&) {}});
-  } else {
-    std::optional<Result> result;
-    way({[&](Share& share) { result = (share.*function)(given...); },
-         [&](Packer& to) { Calls::template put<function>(to, given...); },
-         [&](Unpacker& from) { result = Travel<Result>::take(from); }});
-    return std::move(*result);
+
+  explicit CallOf(const Given&... given) : given_(given...) {}
+  void make(Share& share) override {
+    const auto call = [&](const Given&... each) -> Result { return std::invoke(function, share, each...); };
+    if constexpr (std::is_void_v<Result>)
+      std::apply(call, given_);
+    else
+      result_ = std::apply(call, given_);
   }
-}
+  void put(Packer& to) const override {
+    to.put(call_by_name).put_text(named_call<function>.name());
+    std::apply([&](const Given&... each) { SignatureOf<function>::put(to, each...); }, given_);
+  }
+  void take_result([[maybe_unused]] Unpacker& from) override {
+    if constexpr (!std::is_void_v<Result>) result_ = Travel<Result>::take(from);
+  }
+  Result result() {
+    if constexpr (!std::is_void_v<Result>) return std::move(*result_);
+  }
+
+ private:
+  std::tuple<const Given&...> given_;
+  std::optional<std::conditional_t<std::is_void_v<Result>, bool, Result>> result_;
+};
 
 }  // namespace rvelab::pool

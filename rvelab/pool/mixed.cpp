@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <new>
 #include <utility>
 
 #include "rvelab/pool/threaded_pool.hpp"
@@ -20,14 +18,6 @@ MixedTarget target_of(const MixedSetting& setting, const std::vector<MixedRow>& 
   for (const MixedRow& row : rows)
     target.rows.push_back({tensor_at(row.strain), tensor_at(row.stress), row.value, row.scale, row.missed});
   return target;
-}
-
-/// Before what is there. Steps are made, and their statuses stand: without memory for words the text says less.
-void add_text(Verdict& verdict, const char* text) noexcept {
-  try {
-    verdict.text.insert(0, text);
-  } catch (const std::bad_alloc&) {
-  }
 }
 
 /// Of entry m.
@@ -75,12 +65,8 @@ Verdict each_entry(Pool& pool, const char* name, std::int64_t count, const std::
     if (status != nullptr) status[m] = std::int32_t(verdicts[m].status);
     if (severity(verdicts[m].status) > severity(verdicts[worst].status)) worst = m;
   }
-  if (n == 0 || verdicts[worst].status == Status::ok) return {};
-  Verdict verdict = std::move(verdicts[worst]);
-  char place[96];
-  std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(ids[worst]));
-  add_text(verdict, place);
-  return verdict;
+  if (n == 0) return {};
+  return of_entry(std::move(verdicts[worst]), std::int64_t(worst), ids[worst]);
 }
 
 Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
@@ -95,7 +81,7 @@ Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
     if (batch.error_estimate != nullptr) batch.error_estimate[m] = done.error_estimate;
     if (batch.tokens_out != nullptr) batch.tokens_out[m] = done.token;
     verdict.status = Status(done.status);
-    add_text(verdict, done.text);
+    put_before(verdict, done.text);
   });
 }
 

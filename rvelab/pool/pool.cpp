@@ -28,6 +28,12 @@ void expect_options(const Options& options) {
          "a positive length in m");
 }
 
+bool is_empty(const Batch& batch) {
+  if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
+  if (batch.n > 0) expect_time(batch.dt);
+  return batch.n == 0;
+}
+
 void expect_spawn(std::int64_t n) {
   if (n < 0) throw Refused(Status::bad_input, "spawn: n is " + std::to_string(n) + "; allowed: 0 or more");
   if (n > std::int64_t(slot_limit)) throw Refused(Status::no_slot, "spawn: a pool has 2^26 slots at most");

@@ -47,10 +47,10 @@ struct Population {
   std::vector<std::int64_t> ids;
 };
 
-struct TravellingCall;
+class TravellingCall;
 
 /// Those who implement it decide where the RVEs live. What is declared here they do each in its own way; any other call
-/// is a function of Share, which `at` and `everywhere` take to the RVE.
+/// is a function of Share (calls.hpp), which `at` and `everywhere` take to the RVE.
 class Pool {
  public:
   using StateOf = std::function<std::vector<std::byte>(std::size_t)>;  ///< of the k-th id of a population
@@ -93,7 +93,7 @@ class Pool {
   virtual void interrupt(bool on) noexcept = 0;
   virtual const std::atomic<bool>& interrupted() const noexcept = 0;
 
-  /// What `function`(id, arguments...) of the share that holds the RVE returns; the function stands in ShareCalls.
+  /// What `function`(id, arguments...) of the share that holds the RVE returns.
   template <auto function, class... Arguments>
   auto at(std::int64_t id, const Arguments&... arguments);
   /// What `function`(arguments...) of every share returns, the host's own being the last: until then the call can be
@@ -102,14 +102,16 @@ class Pool {
   auto everywhere(const Arguments&... arguments);
 
  private:
-  virtual void make_at(std::int64_t id, const TravellingCall& call) = 0;
-  virtual void make_everywhere(const TravellingCall& call) = 0;
+  virtual void make_at(std::int64_t id, TravellingCall& call) = 0;
+  virtual void make_everywhere(TravellingCall& call) = 0;
 };
 
 // What every kind of pool refuses.
 
 /// Throws Refused (bad_input, unsupported).
 void expect_options(const Options& options);
+/// Whether a batch has no entries. Throws Refused (bad_input), InvalidIncrement.
+bool is_empty(const Batch& batch);
 /// Throws Refused (bad_input, no_slot) unless n RVEs can be asked for.
 void expect_spawn(std::int64_t n);
 /// Throws Refused (bad_file) unless ids, generations and tag belong together, for that many states.

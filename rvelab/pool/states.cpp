@@ -13,8 +13,8 @@ namespace {
 /// Kozeny-Carman: the permeability goes with e^3/(1 + e).
 double permeability(double void_ratio) { return void_ratio * void_ratio * void_ratio / (1 + void_ratio); }
 
-std::vector<std::byte> bytes_of(Resident& resident) {
-  const Committed committed(resident.rve);
+/// Of an RVE in its committed state.
+std::vector<std::byte> bytes_of(const Resident& resident) {
   const RveState state{{}, resident.tokens, resident.initial_void_ratio, resident.last};
   return to_bytes(state, resident.rve.save());
 }
@@ -70,17 +70,11 @@ rvelab_info ThreadedPool::info(std::int64_t id) {
 }
 
 std::vector<std::int64_t> ThreadedPool::array_rows(std::int64_t id) {
-  const AtWork working(*this);
-  const Hold hold = held(id, ++serial_);
-  const Committed committed(hold.resident().rve);
-  return pool::array_rows(hold.resident().rve);
+  return of_committed(id, [](const Resident& resident) { return pool::array_rows(resident.rve); });
 }
 
 std::vector<std::byte> ThreadedPool::array(std::int64_t id, std::int64_t k) {
-  const AtWork working(*this);
-  const Hold hold = held(id, ++serial_);
-  const Committed committed(hold.resident().rve);
-  return array_of(hold.resident().rve, std::size_t(k));
+  return of_committed(id, [&](const Resident& resident) { return array_of(resident.rve, std::size_t(k)); });
 }
 
 void ThreadedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
@@ -90,11 +84,7 @@ void ThreadedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_s
     *grain_steps++ = std::int64_t(slots_.at(id).grain_steps.load(std::memory_order_relaxed));
 }
 
-std::vector<std::byte> ThreadedPool::save(std::int64_t id) {
-  const AtWork working(*this);
-  const Hold hold = held(id, ++serial_);
-  return bytes_of(hold.resident());
-}
+std::vector<std::byte> ThreadedPool::save(std::int64_t id) { return of_committed(id, bytes_of); }
 
 void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   const AtWork working(*this);
@@ -122,7 +112,9 @@ void ThreadedPool::write(const std::function<void(const Population&, const State
   const Population population{slots_.tag(), slots_.generations(), slots_.all()};
   writer(population, [&](std::size_t k) {
     expect_not_interrupted();
-    return bytes_of(*slots_.at(population.ids[k]).resident);
+    Resident& resident = *slots_.at(population.ids[k]).resident;
+    const Committed committed(resident.rve);
+    return bytes_of(resident);
   });
 }
 
@@ -141,8 +133,10 @@ void ThreadedPool::read(const std::function<Population(const TakeState& take)>& 
 std::vector<std::byte> ThreadedPool::pack(std::span<const std::int64_t> ids) {
   const AtWork working(*this);
   Packer packed;
-  for (const Hold& hold : held(ids, ++serial_))
+  for (const Hold& hold : held(ids, ++serial_)) {
+    const Committed committed(hold.resident().rve);
     packed.put(hold.resident().pending).put_all(std::span<const std::byte>(bytes_of(hold.resident())));
+  }
   return packed.take();
 }
 

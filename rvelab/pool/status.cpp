@@ -1,6 +1,7 @@
 #include "rvelab/pool/status.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -47,6 +48,22 @@ Verdict verdict_of_failure() noexcept {
     verdict.text = text;
   } catch (...) {  // no memory for words: the status says it
   }
+  return verdict;
+}
+
+void put_before(Verdict& verdict, const char* words) noexcept {
+  try {
+    verdict.text.insert(0, words);
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+Verdict of_entry(Verdict verdict, std::int64_t entry, std::int64_t id) noexcept {
+  if (verdict.status == Status::ok) return verdict;
+  char words[96];
+  std::snprintf(words, sizeof words, "entry %lld (id %lld): ", static_cast<long long>(entry),
+                static_cast<long long>(id));
+  put_before(verdict, words);
   return verdict;
 }
 

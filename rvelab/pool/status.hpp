@@ -54,5 +54,9 @@ struct Verdict {
 };
 /// Of the exception that is being handled.
 Verdict verdict_of_failure() noexcept;
+/// Puts words before the text. Steps are made, and their statuses stand: without memory for words the text says less.
+void put_before(Verdict& verdict, const char* words) noexcept;
+/// The verdict of an entry of a call on many RVEs: its text, if there is one, names entry and id.
+Verdict of_entry(Verdict verdict, std::int64_t entry, std::int64_t id) noexcept;
 
 }  // namespace rvelab::pool

@@ -53,6 +53,10 @@ ThreadedPool::ThreadedPool(const Options& options)
 
 ThreadedPool::~ThreadedPool() = default;
 
+void ThreadedPool::serve(std::string_view name, Unpacker& given, Packer& found) {
+  NamedCall::serve(name, *this, given, found);
+}
+
 void ThreadedPool::expect_this_process() const {
   if (forks != process_)
     throw Refused(Status::forked, "pool: it belongs to the parent of this process; make one of its own here");
@@ -102,7 +106,7 @@ void ThreadedPool::called(Slot& slot, long substeps) noexcept {
 
 void ThreadedPool::rest_after_long_call(Slot& slot) noexcept {
   Rve& rve = slot.resident->rve;
-  if (!slot.resident->called_long || rve.shares_start() || rve.released()) return;
+  if (!slot.resident->called_long || rve.has_trial_cache() || rve.released()) return;
   rve.release();
   slot.allocated.store(false, std::memory_order_relaxed);
 }

@@ -76,22 +76,32 @@ class ThreadedPool : public Pool {
   void interrupt(bool on) noexcept override { interrupted_ = on; }
   const std::atomic<bool>& interrupted() const noexcept override { return interrupted_; }
 
+  /// Makes the call of that name (calls.hpp).
+  virtual void serve(std::string_view name, Unpacker& given, Packer& found);
+  /// read(resident) of an RVE in its committed state, which no other call works on meanwhile.
+  template <class Read>
+  auto of_committed(std::int64_t id, const Read& read) {
+    const AtWork working(*this);
+    const Hold hold = held(id, ++serial_);
+    const Committed committed(hold.resident().rve);
+    return read(std::as_const(hold.resident()));
+  }
+
   /// Ends a template.
   virtual void release_template(std::int64_t of_template);
-  virtual rvelab_info info(std::int64_t id);
+  rvelab_info info(std::int64_t id);
   /// mixed.hpp.
-  virtual MixedDone apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows);
-  virtual RelaxDone relax(std::int64_t id, double unbalanced, std::int64_t max_substeps);
+  MixedDone apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows);
+  RelaxDone relax(std::int64_t id, double unbalanced, std::int64_t max_substeps);
   /// Of the committed state (arrays.hpp).
-  virtual std::vector<std::int64_t> array_rows(std::int64_t id);
-  virtual std::vector<std::byte> array(std::int64_t id, std::int64_t k);
+  std::vector<std::int64_t> array_rows(std::int64_t id);
+  std::vector<std::byte> array(std::int64_t id, std::int64_t k);
   /// The committed state with its tokens, as to_bytes(RveState), and back.
   virtual std::vector<std::byte> save(std::int64_t id);
-  virtual void load(std::int64_t id, std::span<const std::byte> snapshot);
+  void load(std::int64_t id, std::span<const std::byte> snapshot);
   /// The same, where the committed state is still that of `token`: Refused (busy) if another call has changed it since.
   /// `grain_steps` were made to get there.
-  virtual void replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token,
-                       std::int64_t grain_steps);
+  void replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token, std::int64_t grain_steps);
 
   std::vector<std::int64_t> costs(std::span<const std::int64_t> ids) {
     std::vector<std::int64_t> made(ids.size());
@@ -153,8 +163,8 @@ class ThreadedPool : public Pool {
 
   using Templates = std::map<std::int64_t, Resident>;  ///< by their numbers, none of which is given out twice
 
-  void make_at(std::int64_t, const TravellingCall& call) override { call.make(*this); }
-  void make_everywhere(const TravellingCall& call) override { call.make(*this); }
+  void make_at(std::int64_t, TravellingCall& call) override { call.make(*this); }
+  void make_everywhere(TravellingCall& call) override { call.make(*this); }
   Resident made_template(Specimen& specimen, std::int64_t first_token) const;
   Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
@@ -195,21 +205,18 @@ class ThreadedPool : public Pool {
   std::atomic<std::uint64_t> next_release_{0};  ///< the next slot whose memory may be released
 };
 
-/// What hosts and other ranks may call of a share. A new function is added here.
-using ShareCalls =
-    CallList<&Share::release_template, &Share::info, &Share::apply_mixed, &Share::relax, &Share::array_rows,
-             &Share::array, &Share::save, &Share::load, &Share::replace, &Share::add_template_as, &Share::spawn_as,
-             &Share::clone_as, &Share::costs, &Share::pack, &Share::receive, &Share::place, &Share::forget_received,
-             &Share::give_up, &Share::prepare, &Share::settle>;
-
 template <auto function, class... Arguments>
 auto Pool::at(std::int64_t id, const Arguments&... arguments) {
-  return travelled<ShareCalls, function>([&](const TravellingCall& call) { make_at(id, call); }, id, arguments...);
+  CallOf<function, std::int64_t, Arguments...> call(id, arguments...);
+  make_at(id, call);
+  return call.result();
 }
 
 template <auto function, class... Arguments>
 auto Pool::everywhere(const Arguments&... arguments) {
-  return travelled<ShareCalls, function>([&](const TravellingCall& call) { make_everywhere(call); }, arguments...);
+  CallOf<function, Arguments...> call(arguments...);
+  make_everywhere(call);
+  return call.result();
 }
 
 }  // namespace rvelab::pool

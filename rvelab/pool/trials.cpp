@@ -5,8 +5,6 @@
 // take ten microseconds or more, so that a count is as good as stealing: the last thread ends at most one piece after
 // the first (Graham 1969).
 #include <algorithm>
-#include <cstdio>
-#include <new>
 #include <string>
 
 #include "rvelab/measure/tangent.hpp"
@@ -175,9 +173,7 @@ void ThreadedPool::run_entry(Entry& entry, const Batch& batch) noexcept {
 
 Verdict ThreadedPool::trial(const Batch& batch) {
   const AtWork working(*this);
-  if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
-  if (batch.n == 0) return {};
-  expect_time(batch.dt);
+  if (is_empty(batch)) return {};
   const auto n = std::size_t(batch.n);
   const std::uint64_t call = ++serial_;
   std::vector<Hold> holds(n);
@@ -215,18 +211,8 @@ Verdict ThreadedPool::trial(const Batch& batch) {
       batch.dt_scale[k] = is_error(status) ? 0 : status == Status::discard ? scale_after_discard : 1;
     if (severity(status) > severity(entries[worst].verdict.status)) worst = k;
   }
-  Verdict verdict = std::move(entries[worst].verdict);
-  if (verdict.status != Status::ok) {
-    char place[96];
-    std::snprintf(place, sizeof place, "entry %lld (id %lld): ",
-                  static_cast<long long>(batch.places != nullptr ? batch.places[worst] : std::int64_t(worst)),
-                  static_cast<long long>(batch.ids[worst]));
-    try {
-      verdict.text.insert(0, place);
-    } catch (const std::bad_alloc&) {  // trials are made, and their statuses written: the text says less
-    }
-  }
-  return verdict;
+  return of_entry(std::move(entries[worst].verdict),
+                  batch.places != nullptr ? batch.places[worst] : std::int64_t(worst), batch.ids[worst]);
 }
 
 std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {

@@ -82,6 +82,8 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
         trial(given, found);
       else if (number == std::int32_t(RankCall::apply))
         apply(given, found);
+      else if (number == pool::call_by_name)
+        share_->serve(given.take_text(), given, found);
       else
         ShareCalls::serve(number, *share_, given, found);
       return found.take();

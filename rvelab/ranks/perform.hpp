@@ -7,12 +7,48 @@ namespace rvelab::ranks {
 
 using pool::Bytes;
 using pool::Packer;
-using pool::ShareCalls;
 using pool::Unpacker;
 
-/// A message begins with the number of a function in pool::ShareCalls, or with one of these, which ranks serve in their
-/// own way. What follows, and what the answer holds behind its verdict, stands in perform.cpp.
+/// A message begins with the number of a function in ShareCalls, with pool::call_by_name, or with one of these, which
+/// ranks serve in their own way. What follows, and what the answer holds behind its verdict, stands in perform.cpp.
 enum class RankCall : std::int32_t { end = -1, trial = -2, apply = -3 };
+
+/// Virtual functions of a share that ranks ask of each other; the place of each is its number in a message.
+template <auto... functions>
+class CallList {
+ public:
+  template <auto wanted>
+  static constexpr std::int32_t number() {
+    std::int32_t at = 0, found = -1;
+    ((std::is_same_v<Name<wanted>, Name<functions>> ? found = at++ : at++), ...);
+    return found;
+  }
+  /// Number and arguments.
+  template <auto function, class... Arguments>
+  static void put(Packer& to, const Arguments&... arguments) {
+    static_assert(number<function>() >= 0, "the function is missing in the list of calls");
+    to.put(number<function>());
+    pool::SignatureOf<function>::put(to, arguments...);
+  }
+  /// Calls the function of that number.
+  static void serve(std::int32_t number, pool::Share& share, Unpacker& given, Packer& found) {
+    std::int32_t at = 0;
+    const bool known =
+        ((at++ == number && (pool::SignatureOf<functions>::template serve<functions>(share, given, found), true)) ||
+         ...);
+    if (!known)
+      throw pool::Refused(pool::Status::internal, "a message between ranks has an unknown number: please report this");
+  }
+
+ private:
+  template <auto>
+  struct Name;
+};
+
+using ShareCalls = CallList<&pool::Share::release_template, &pool::Share::save, &pool::Share::add_template_as,
+                            &pool::Share::spawn_as, &pool::Share::clone_as, &pool::Share::costs, &pool::Share::pack,
+                            &pool::Share::receive, &pool::Share::place, &pool::Share::forget_received,
+                            &pool::Share::give_up, &pool::Share::prepare, &pool::Share::settle>;
 
 /// What a trial says beside ids and increments: which results it computes, a bit for each of pool::batch_outputs, and
 /// whether tokens go in and out.
@@ -22,7 +58,7 @@ struct Wanted {
 };
 
 inline Packer message(RankCall call) { return std::move(Packer().put(call)); }
-/// The call of a function in pool::ShareCalls.
+/// The call of a function in ShareCalls.
 template <auto function, class... Arguments>
 Bytes message(const Arguments&... arguments) {
   Packer packer;

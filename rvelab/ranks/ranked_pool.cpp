@@ -171,7 +171,7 @@ RankedPool::Messages RankedPool::to_others(const Bytes& message) const {
   return messages;
 }
 
-void RankedPool::make_at(std::int64_t id, const pool::TravellingCall& call) {
+void RankedPool::make_at(std::int64_t id, pool::TravellingCall& call) {
   const Lock lock = at_work();
   const int rank = place_of(id).rank;
   Packer packer;
@@ -180,7 +180,7 @@ void RankedPool::make_at(std::int64_t id, const pool::TravellingCall& call) {
   call.take_result(answer.found());
 }
 
-void RankedPool::make_everywhere(const pool::TravellingCall& call) {
+void RankedPool::make_everywhere(pool::TravellingCall& call) {
   const Lock lock = alone();
   Packer packer;
   call.put(packer);

@@ -51,8 +51,8 @@ class RankedPool final : public pool::Pool {
   using Messages = std::vector<Bytes>;
   using Lock = std::unique_lock<std::mutex>;
 
-  void make_at(std::int64_t id, const pool::TravellingCall& call) override;
-  void make_everywhere(const pool::TravellingCall& call) override;
+  void make_at(std::int64_t id, pool::TravellingCall& call) override;
+  void make_everywhere(pool::TravellingCall& call) override;
   Lock at_work();
   Lock alone();
   Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }

@@ -128,9 +128,7 @@ Verdict RankedPool::apply(std::int64_t id, const Matrix3& displacement_gradient,
 
 Verdict RankedPool::trial(const pool::Batch& batch) {
   const Lock lock = at_work();
-  if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
-  if (batch.n == 0) return {};
-  expect_time(batch.dt);
+  if (is_empty(batch)) return {};
   const auto n = std::size_t(batch.n);
   Worst worst;
   std::string text = room_for_text(), text_of_refused;

@@ -10,6 +10,16 @@
 using namespace rvelab;
 using namespace rvelab::test;
 
+namespace {
+
+/// A call that this test alone knows: it stands in no list.
+std::int64_t grains_times(pool::Share& share, std::int64_t id, std::int64_t factor) {
+  return share.of_committed(id,
+                            [&](const pool::Resident& resident) { return factor * std::int64_t(resident.rve.size()); });
+}
+
+}  // namespace
+
 TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in one process") {
   for (const int ranks : {1, 2, 3, 5})
     for (const auto memory : {RVELAB_TRIAL_KEEP, RVELAB_TRIAL_RECOMPUTE}) {
@@ -87,6 +97,7 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
         CHECK((a.p == b.p && std::ranges::equal(a.fabric, b.fabric) && std::ranges::equal(a.lattice, b.lattice) &&
                a.token == b.token && a.contacts == b.contacts && a.grain_steps == b.grain_steps &&
                a.inertial_number == b.inertial_number && a.error_estimate == b.error_estimate));
+        CHECK(spread->at<&grains_times>(there_of.at(id), std::int64_t(3)) == 3 * a.grains);
         const auto rows = one.array_rows(id);
         CHECK(rows == spread->at<&pool::Share::array_rows>(there_of.at(id)));
         for (std::size_t k = 0; k < rows.size(); ++k)
