@@ -4,11 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <sstream>
-#include <thread>
 
 #include "rvelab/error.hpp"
-#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::calibrate {
 namespace {
@@ -45,24 +42,6 @@ PressureResult evaluate(const records::TestResult& test, int dimension) {
   result.wall_seconds = test.wall_seconds;
   result.grain_steps = test.grain_steps;
   return result;
-}
-
-/// "p = 10000 Pa" in front of a message.
-std::string at_pressure(const protocol::Protocol& protocol, const char* message) {
-  TextStream text;
-  text << "p = " << protocol.pressure << " Pa: " << message;
-  return text.str();
-}
-
-protocol::TestRun run_one(std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen,
-                          const RunOne& run) {
-  try {
-    return run ? run(number, protocol, specimen) : protocol::run_protocol(protocol, specimen);
-  } catch (const InputError& error) {
-    throw InputError(at_pressure(protocol, error.what()));
-  } catch (const Error& error) {
-    throw Error(at_pressure(protocol, error.what()));
-  }
 }
 
 }  // namespace
@@ -158,21 +137,6 @@ void check_specimens(const std::vector<protocol::Protocol>& protocols, const std
                      " pressures; allowed: one for all or one for each; give as many as there are pressures, or "
                      "--every-pressure to test each specimen at each of them");
   }
-}
-
-std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& protocols,
-                                       const std::vector<Specimen>& specimens, unsigned threads, const RunOne& run,
-                                       const std::vector<std::size_t>& specimen_of) {
-  if (specimen_of.empty()) check_specimens(protocols, specimens);
-  const auto number_of = [&](std::size_t k) {
-    return !specimen_of.empty() ? specimen_of.at(k) : specimens.size() == 1 ? 0 : k;
-  };
-  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<protocol::TestRun> runs(protocols.size());
-  Workers(unsigned(std::min<std::size_t>(threads, protocols.size())))
-      .for_each_in_turn(protocols.size(),
-                        [&](std::size_t k) { runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run); });
-  return runs;
 }
 
 }  // namespace rvelab::calibrate

@@ -1,7 +1,6 @@
 // Calibration: one compression test at several pressures, and the strength of the soil from all of them.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
@@ -76,15 +75,5 @@ void check_calibratable(const protocol::Protocol& protocol);
 
 /// InputError unless there is one specimen for all protocols, or one for each.
 void check_specimens(const std::vector<protocol::Protocol>& protocols, const std::vector<Specimen>& specimens);
-
-/// Runs one test, by its number.
-using RunOne = std::function<protocol::TestRun(std::size_t number, const protocol::Protocol&, const Specimen&)>;
-
-/// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results
-/// do not depend on the number of threads. Throws the error of the first test that failed, naming its pressure.
-/// `run`: instead of run_protocol. `specimen_of`: the specimen of each protocol by its number, where not its own.
-std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& protocols,
-                                       const std::vector<Specimen>& specimens, unsigned threads, const RunOne& run = {},
-                                       const std::vector<std::size_t>& specimen_of = {});
 
 }  // namespace rvelab::calibrate

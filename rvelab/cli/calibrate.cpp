@@ -3,13 +3,13 @@
 #include "rvelab/calibrate/calibrate.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -19,10 +19,7 @@
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
-#include "rvelab/cli/interrupt.hpp"
-#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
-#include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
@@ -48,6 +45,11 @@ struct Plan {
   std::vector<std::string> files;  ///< names of the record files
   std::size_t compressions = 0;    ///< the tests after these are in tension, one of each specimen
 
+  void add(const protocol::Protocol& protocol, std::size_t specimen, std::string file) {
+    protocols.push_back(protocol);
+    specimen_of.push_back(specimen);
+    files.push_back(std::move(file));
+  }
   std::string name(std::size_t test, bool several_specimens) const {
     const std::string pressure = test < compressions ? "p = " + in_words(protocols[test].pressure) + " Pa" : "tension";
     return several_specimens ? "specimen " + std::to_string(specimen_of[test] + 1) + ", " + pressure : pressure;
@@ -103,17 +105,6 @@ std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments
   return protocols;
 }
 
-/// InputError if two files hold the same specimen: it would count twice in the statistics.
-void expect_different(const std::vector<Specimen>& specimens, const std::vector<std::string>& files) {
-  std::map<std::uint32_t, std::size_t> first;
-  for (std::size_t k = 0; k < specimens.size(); ++k) {
-    const auto [found, is_new] = first.emplace(io::digest(specimens[k]), k);
-    if (is_new) continue;
-    throw InputError("--specimen " + files[k] + " holds the same specimen as --specimen " + files[found->second] +
-                     "; allowed: specimens that differ; leave one out, or pack one with another seed");
-  }
-}
-
 /// Every specimen at every pressure where that was asked for or there is one pressure; else one for each, or one for
 /// all.
 Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vector<Specimen>& specimens,
@@ -126,9 +117,7 @@ Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vec
       const std::size_t specimen = cross ? s : specimens.size() == 1 ? 0 : k;
       std::string file = record_file_name(at_pressures[k].pressure);
       if (cross && specimens.size() > 1) file.insert(file.size() - 3, "_" + std::to_string(s + 1));
-      plan.protocols.push_back(at_pressures[k]);
-      plan.specimen_of.push_back(specimen);
-      plan.files.push_back(file);
+      plan.add(at_pressures[k], specimen, file);
     }
   }
   plan.compressions = plan.protocols.size();
@@ -140,11 +129,8 @@ void add_tension(const CalibrateArguments& arguments, std::size_t specimens, Pla
   if (!arguments.tension) return;
   const protocol::Protocol tension = protocol::read_protocol(protocol_path(*arguments.tension));
   const auto used = std::set<std::size_t>(plan.specimen_of.begin(), plan.specimen_of.end());
-  for (const std::size_t specimen : used) {
-    plan.protocols.push_back(tension);
-    plan.specimen_of.push_back(specimen);
-    plan.files.push_back(specimens > 1 ? "T_" + std::to_string(specimen + 1) + ".h5" : "T.h5");
-  }
+  for (const std::size_t specimen : used)
+    plan.add(tension, specimen, specimens > 1 ? "T_" + std::to_string(specimen + 1) + ".h5" : "T.h5");
 }
 
 /// What tests in tension and without lateral stress give beside the line, and what of it the line would give.
@@ -367,77 +353,68 @@ void keep_summary(const std::string& folder, const Plan& plan, const std::vector
                   const std::vector<records::TestResult>& results, int dimension, bool sticks) {
   const Ensemble ensemble{plan.protocols, files, std::vector<std::size_t>(files.size(), 0), {"specimens"}};
   std::vector<ensemble::TestOf> tests;
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    tests.push_back({0, plan.specimen_of[k], plan.protocols[k].pressure,
-                     ensemble::measured(plan.protocols[k], results[k], dimension),
-                     ensemble::strength_of(plan.protocols[k], results[k], dimension), sticks});
-  }
+  for (std::size_t k = 0; k < results.size(); ++k)
+    tests.push_back(test_of(plan.protocols[k], results[k], dimension, 0, plan.specimen_of[k], sticks));
   write_summary(folder, ensemble, tests, ensemble::summary_of(tests), {});
+}
+
+/// The tests of a plan, with the files of their records where these are kept.
+std::vector<RecordedTest> recorded(const Plan& plan, const std::vector<Specimen>& specimens, const std::string& folder,
+                                   const std::vector<std::string>& inputs) {
+  std::vector<RecordedTest> tests;
+  for (std::size_t k = 0; k < plan.protocols.size(); ++k) {
+    const Specimen& specimen = specimens[plan.specimen_of[k]];
+    tests.push_back({{plan.name(k, specimens.size() > 1), &plan.protocols[k], [&specimen] { return specimen; }}, ""});
+    tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimen));
+  }
+  if (folder.empty()) return tests;
+  for (std::size_t k = 0; k < tests.size(); ++k)
+    protocol::with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);  // mistakes, before a file is touched
+  make_folder(folder);
+  for (std::size_t k = 0; k < tests.size(); ++k) {
+    tests[k].file = (std::filesystem::path(folder) / plan.files[k]).string();
+    io::expect_place(tests[k].file, inputs);
+  }
+  return tests;
 }
 
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto at_pressures = protocols_at(arguments);
+  const protocol::Protocol& general = at_pressures.front();
   arguments.test.expect_output(arguments.folder);
-  auto words = arguments.specimens;
-  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
-  const auto given = files_of(words);
-  const auto specimens = specimens_for(at_pressures.front(), given);
-  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
+  const auto given = files_of(arguments.specimens, arguments.more);
+  const auto specimens = specimens_for(general, given);
+  const auto files = specimen_files(general, given);
+  std::vector<std::uint32_t> digests;
+  for (const Specimen& specimen : specimens) {
+    if (!arguments.every_pressure && at_pressures.size() > 1) break;  // one for each pressure
+    digests.push_back(io::digest(specimen));
+    expect_another(files, digests);
+  }
   Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   add_tension(arguments, specimens.size(), plan);
-  for (std::size_t k = 0; k < plan.protocols.size(); ++k)
-    tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimens[plan.specimen_of[k]]));
-  const std::size_t tests = plan.protocols.size();
-  std::vector<KeptTest> kept;
-  if (!arguments.folder.empty()) {
-    auto inputs = specimen_files(at_pressures.front(), given);
-    inputs.push_back(at_pressures.front().path);
-    for (std::size_t k = 0; k < tests; ++k) protocol::with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
-    make_folder(arguments.folder);
-    for (std::size_t k = 0; k < tests; ++k) {
-      const std::string file = (std::filesystem::path(arguments.folder) / plan.files[k]).string();
-      io::expect_place(file, inputs);
-      kept.push_back({&plan.protocols[k], [&, k] { return specimens[plan.specimen_of[k]]; }, file});
-    }
-  }
-  if (!shared_out(kept, arguments.test)) return;
-  std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
-  for (std::size_t k = 0; k < kept.size(); ++k)
-    stores[k] = open_shared_store(kept[k].file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.test);
-  std::vector<protocol::TestRun> runs;
-  {
-    ProgressLine progress(tests);
-    runs = calibrate::run_all(
-        plan.protocols, specimens, arguments.test.threads,
-        [&](std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen) {
-          protocol::Watch watch;
-          watch.stop = &stop_on_signals();
-          watch.on_path_point = [&, name = plan.name(number, specimens.size() > 1)](
-                                    const protocol::PathPoint& reached) { progress.show(number, name, reached); };
-          protocol::TestRun run = run_recorded(protocol, specimen, stores[number].get(), watch);
-          if (run.complete) progress.done(number);
-          return run;
-        },
-        plan.specimen_of);
-  }
-  const auto done = std::count_if(runs.begin(), runs.end(), [](const protocol::TestRun& run) { return run.complete; });
-  if (std::size_t(done) < tests)
-    end_stopped(" with " + std::to_string(done) + " of " + std::to_string(tests) + " tests complete; " +
-                (arguments.folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
-  std::vector<records::TestResult> results, tension;
-  for (std::size_t k = 0; k < tests; ++k) (k < plan.compressions ? results : tension).push_back(runs[k].result);
+  auto inputs = files;
+  inputs.push_back(general.path);
+  const auto tests = recorded(plan, specimens, arguments.folder, inputs);
+  std::vector<records::TestResult> results(plan.compressions), tension(tests.size() - plan.compressions);
+  std::atomic<bool> sticks{false};
+  const auto failures =
+      run_tests(tests, arguments.test, Opening::all_first, [&](std::size_t k, protocol::TestRun&& run) {
+        if (calibrate::grains_stick(run.end_state)) sticks = true;
+        (k < plan.compressions ? results[k] : tension[k - plan.compressions]) = std::move(run.result);
+      });
+  if (!failures) return;
+  for (const std::string& failure : *failures)
+    if (!failure.empty()) throw Error(failure);
   const std::vector<std::size_t> specimen_of(plan.specimen_of.begin(),
                                              plan.specimen_of.begin() + long(plan.compressions));
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   const int dimension = specimens.front().cell.dimension;
-  const bool sticks = std::any_of(runs.begin(), runs.end(),
-                                  [](const protocol::TestRun& run) { return calibrate::grains_stick(run.end_state); });
-  if (!arguments.folder.empty())
-    keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension, sticks);
+  if (!arguments.folder.empty()) keep_summary(arguments.folder, plan, files, results, dimension, sticks);
   const calibrate::Calibration calibration = calibrate::calibrate(results, dimension, specimen_of, sticks);
-  report_calibration(calibration, beside_the_line(tension, calibration, dimension), at_pressures.front().name,
-                     specimen_files(at_pressures.front(), given), wall.count(), arguments.test.json);
+  report_calibration(calibration, beside_the_line(tension, calibration, dimension), general.name, files, wall.count(),
+                     arguments.test.json);
 }
 
 }  // namespace

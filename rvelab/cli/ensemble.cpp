@@ -8,15 +8,10 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
-#include <mutex>
 #include <optional>
-#include <set>
-#include <thread>
 
 #include "rvelab/calibrate/calibrate.hpp"
 #include "rvelab/cli/doubts.hpp"
-#include "rvelab/cli/interrupt.hpp"
-#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
@@ -29,13 +24,6 @@ namespace rvelab::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A test of the ensemble.
-struct Planned {
-  std::size_t protocol, specimen;
-  std::string file;  ///< of its records; "": not kept
-  std::string name;  ///< in messages
-};
 
 /// R_ and the specimen's file name without S_ and extension; names that are not unique get their number.
 std::vector<std::string> record_stems(const std::vector<std::string>& files) {
@@ -52,17 +40,17 @@ std::vector<std::string> record_stems(const std::vector<std::string>& files) {
   return stems;
 }
 
-std::vector<Planned> planned(const Ensemble& ensemble, const std::string& folder) {
+/// Every protocol on every specimen, those of a specimen one after the other.
+std::vector<RecordedTest> planned(const Ensemble& ensemble, const std::string& folder) {
   const std::vector<std::string> stems = record_stems(ensemble.files);
-  std::vector<Planned> tests;
+  std::vector<RecordedTest> tests;
   for (std::size_t s = 0; s < ensemble.files.size(); ++s) {
-    for (std::size_t p = 0; p < ensemble.protocols.size(); ++p) {
-      Planned test{p, s, "", ensemble.files[s]};
+    for (const protocol::Protocol& protocol : ensemble.protocols) {
+      RecordedTest test{{ensemble.files[s], &protocol, [&, s] { return io::read_specimen(ensemble.files[s]); }}, ""};
       std::string stem = stems[s];
       if (ensemble.protocols.size() > 1) {
-        const double pressure = ensemble.protocols[p].pressure;
-        stem += "_" + std::to_string(std::llround(pressure)) + "Pa";
-        test.name += ", p = " + in_words(pressure) + " Pa";
+        stem += "_" + std::to_string(std::llround(protocol.pressure)) + "Pa";
+        test.name += ", p = " + in_words(protocol.pressure) + " Pa";
       }
       if (!folder.empty()) test.file = (fs::path(folder) / (stem + ".h5")).string();
       tests.push_back(test);
@@ -74,16 +62,14 @@ std::vector<Planned> planned(const Ensemble& ensemble, const std::string& folder
 /// Reads every specimen once, so that mistakes are told before the first test runs. InputError if two files hold the
 /// same specimen, which would count twice, or if one does not go with the protocol.
 int expect_specimens(const Ensemble& ensemble) {
-  std::map<std::uint32_t, std::size_t> first;
+  std::vector<std::uint32_t> digests;
   int dimension = 0;
   for (std::size_t k = 0; k < ensemble.files.size(); ++k) {
     const Specimen specimen = io::read_specimen(ensemble.files[k]);
     for (const protocol::Protocol& protocol : ensemble.protocols)
       tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
-    const auto [found, is_new] = first.emplace(io::digest(specimen), k);
-    if (!is_new)
-      throw InputError(ensemble.files[k] + " holds the same specimen as " + ensemble.files[found->second] +
-                       "; allowed: specimens that differ; leave one out, or pack one with another seed");
+    digests.push_back(io::digest(specimen));
+    expect_another(ensemble.files, digests);
     if (k > 0 && specimen.cell.dimension != dimension)
       throw InputError(ensemble.files[k] + " is " + std::to_string(specimen.cell.dimension) + "D and " +
                        ensemble.files[0] + " is " + std::to_string(dimension) +
@@ -93,12 +79,12 @@ int expect_specimens(const Ensemble& ensemble) {
   return dimension;
 }
 
-void expect_places(const Ensemble& ensemble, const std::vector<Planned>& tests, const std::string& folder,
+void expect_places(const Ensemble& ensemble, const std::vector<RecordedTest>& tests, const std::string& folder,
                    const TestOptions& options) {
   std::vector<std::string> inputs = ensemble.files;
   inputs.push_back(ensemble.protocols.front().path);
   make_folder(folder);
-  for (const Planned& test : tests) {
+  for (const RecordedTest& test : tests) {
     io::expect_output(test.file, options.force || options.resume, inputs, ", --resume to go on with the tests");
     const std::string journal = io::journal_of(test.file);
     if (!options.force && !options.resume && fs::exists(journal))
@@ -109,60 +95,28 @@ void expect_places(const Ensemble& ensemble, const std::vector<Planned>& tests, 
                       ", --resume to go on with the tests");
 }
 
-/// This process's share of the tests; true if what is left to do is its own.
-bool shared_out(const Ensemble& ensemble, const std::vector<Planned>& tests, const TestOptions& options) {
-  std::vector<KeptTest> shared;
-  for (const Planned& test : tests)
-    shared.push_back({&ensemble.protocols[test.protocol],
-                      [&, k = test.specimen] { return io::read_specimen(ensemble.files[k]); }, test.file});
-  return shared_out(shared, options);
-}
-
-/// What came of the tests.
-struct Outcome {
-  std::vector<std::optional<ensemble::TestOf>> tests;
-  std::vector<std::string> failures;  ///< of each; "": none
-};
-
-Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests, int dimension,
-                    const TestOptions& options) {
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const unsigned threads = options.threads > 0 ? options.threads : cores;
-  Outcome outcome{std::vector<std::optional<ensemble::TestOf>>(tests.size()), std::vector<std::string>(tests.size())};
-  ProgressLine progress(tests.size());
-  const auto one = [&](std::size_t k) {
-    const Planned& test = tests[k];
-    const protocol::Protocol& protocol = ensemble.protocols[test.protocol];
-    if (stop_on_signals().load()) return;
-    try {
-      const Specimen specimen = io::read_specimen(ensemble.files[test.specimen]);
-      std::unique_ptr<io::RecordStore> store;
-      if (!test.file.empty()) store = open_shared_store(test.file, protocol, specimen, options);
-      protocol::Watch watch;
-      watch.stop = &stop_on_signals();
-      watch.on_path_point = [&](const protocol::PathPoint& reached) { progress.show(k, test.name, reached); };
-      const protocol::TestRun run = run_recorded(protocol, specimen, store.get(), watch);
-      if (!run.complete) return;
-      progress.done(k);
-      outcome.tests[k] = {ensemble.groups[test.specimen],
-                          test.specimen,
-                          protocol.pressure,
-                          ensemble::measured(protocol, run.result, dimension),
-                          ensemble::strength_of(protocol, run.result, dimension),
-                          calibrate::grains_stick(run.end_state)};
-    } catch (const InputError& error) {
-      throw InputError(test.name + ": " + error.what());
-    } catch (const Error& error) {
-      outcome.failures[k] = test.name + ": " + error.what();
-    }
-  };
-  Workers(unsigned(std::min<std::size_t>(threads, tests.size()))).for_each_in_turn(tests.size(), one);
-  return outcome;
-}
-
 }  // namespace
 
-std::vector<std::string> files_of(const std::vector<std::string>& words) {
+ensemble::TestOf test_of(const protocol::Protocol& protocol, const records::TestResult& result, int dimension,
+                         std::size_t group, std::size_t specimen, bool sticks) {
+  return {group,
+          specimen,
+          protocol.pressure,
+          ensemble::measured(protocol, result, dimension),
+          ensemble::strength_of(protocol, result, dimension),
+          sticks};
+}
+
+void expect_another(const std::vector<std::string>& files, const std::vector<std::uint32_t>& digests) {
+  const std::size_t last = digests.size() - 1;
+  const auto same = std::size_t(std::find(digests.begin(), digests.end(), digests.back()) - digests.begin());
+  if (same < last)
+    throw InputError(files[last] + " holds the same specimen as " + files[same] +
+                     "; allowed: specimens that differ; leave one out, or pack one with another seed");
+}
+
+std::vector<std::string> files_of(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
   std::vector<std::string> files;
   for (const std::string& word : words) {
     std::error_code ignored;
@@ -181,37 +135,34 @@ std::vector<std::string> files_of(const std::vector<std::string>& words) {
 
 void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptions options) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::vector<Planned> tests = planned(ensemble, folder);
+  const std::vector<RecordedTest> tests = planned(ensemble, folder);
   const int dimension = expect_specimens(ensemble);
   options.resume = options.resume || options.share;  // another process may have begun
   if (!folder.empty()) expect_places(ensemble, tests, folder, options);
-  if (!shared_out(ensemble, tests, options)) return;
-  const Outcome outcome = carried_out(ensemble, tests, dimension, options);
+  std::vector<std::optional<ensemble::TestOf>> measured(tests.size());
+  auto failures = run_tests(tests, options, Opening::one_by_one, [&](std::size_t k, protocol::TestRun&& run) {
+    const std::size_t specimen = k / ensemble.protocols.size();
+    measured[k] = test_of(*tests[k].protocol, run.result, dimension, ensemble.groups[specimen], specimen,
+                          calibrate::grains_stick(run.end_state));
+  });
+  if (!failures) return;
+  std::erase(*failures, "");
   std::vector<ensemble::TestOf> finished;
-  std::vector<std::string> failures;
-  for (std::size_t k = 0; k < tests.size(); ++k) {
-    if (outcome.tests[k]) finished.push_back(*outcome.tests[k]);
-    if (!outcome.failures[k].empty()) failures.push_back(outcome.failures[k]);
-  }
-  if (finished.size() + failures.size() < tests.size()) {
-    end_stopped(" with " + std::to_string(finished.size()) + " of " + std::to_string(tests.size()) +
-                " tests complete; " +
-                (folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
-  }
+  for (const auto& test : measured)
+    if (test) finished.push_back(*test);
   const ensemble::Summary summary = ensemble::summary_of(finished);
-  for (const std::string& failure : failures) tell(failure);  // before the summary, which a full disk refuses too
-  if (!folder.empty()) write_summary(folder, ensemble, finished, summary, failures);
+  for (const std::string& failure : *failures) tell(failure);  // before the summary, which a full disk refuses too
+  if (!folder.empty()) write_summary(folder, ensemble, finished, summary, *failures);
   if (options.json) {
-    std::cout << as_json(ensemble, finished, summary, failures).dump(1, ' ', false, Json::error_handler_t::replace)
-              << std::endl;
+    std::cout << json_text(as_json(ensemble, finished, summary, *failures)) << std::flush;
   } else {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     std::cout << as_table(ensemble, summary);
     if (!folder.empty()) std::cout << "files   " << folder << "/R_*.h5, summary.json, summary.csv\n";
     std::cout << "wall_s  " << in_words(wall.count()) << std::endl;
   }
-  if (failures.empty()) return;
-  throw Error(std::to_string(failures.size()) + " of " + std::to_string(tests.size()) +
+  if (failures->empty()) return;
+  throw Error(std::to_string(failures->size()) + " of " + std::to_string(tests.size()) +
               " tests could not be carried out; the summary is of the others");
 }
 

@@ -13,7 +13,9 @@ namespace rvelab::cli {
 
 /// Files that the words name: a word with *, ? or [ names every file that fits it, in alphabetical order. InputError if
 /// none does.
-std::vector<std::string> files_of(const std::vector<std::string>& words);
+std::vector<std::string> files_of(std::vector<std::string> words, const std::vector<std::string>& more = {});
+/// InputError if the specimen of the last digest (io::digest) is that of a file before: it would count twice.
+void expect_another(const std::vector<std::string>& files, const std::vector<std::uint32_t>& digests);
 
 /// Tests as they are planned: one protocol or several (of several pressures), on specimens in one group or two.
 struct Ensemble {
@@ -23,6 +25,10 @@ struct Ensemble {
   std::vector<std::string> names;   ///< of the groups
   bool several_groups() const { return names.size() > 1; }
 };
+
+/// A finished test for the summary.
+ensemble::TestOf test_of(const protocol::Protocol& protocol, const records::TestResult& result, int dimension,
+                         std::size_t group, std::size_t specimen, bool sticks);
 
 /// Summary of finished tests; `failures` name the tests that could not be carried out.
 Json as_json(const Ensemble& ensemble, const std::vector<ensemble::TestOf>& tests, const ensemble::Summary& summary,

@@ -13,8 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using ensemble::Spread;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 /// "p = 20000 Pa", or of all pressures.
 std::string at_pressure(double pressure) {
   return std::isnan(pressure) ? "all tests of a specimen together" : "p = " + in_words(pressure) + " Pa";
@@ -38,7 +36,7 @@ Json as_json(const Ensemble& ensemble, const std::vector<ensemble::TestOf>& test
   for (const ensemble::TestOf& test : tests) {
     Json one{{"specimen", ensemble.files[test.specimen]},
              {"group", ensemble.names[test.group]},
-             {"pressure_Pa", number(test.pressure)}};
+             {"pressure_Pa", test.pressure}};
     for (std::size_t k = 0; k < test.values.size(); ++k)
       if (std::isfinite(test.values[k])) one[ensemble::measures()[k].name] = test.values[k];
     json["tests"].push_back(std::move(one));
@@ -47,25 +45,25 @@ Json as_json(const Ensemble& ensemble, const std::vector<ensemble::TestOf>& test
   for (const ensemble::Row& row : summary.rows) {
     const Spread& spread = row.spread;
     json["summary"].push_back({{"group", ensemble.names[row.group]},
-                               {"pressure_Pa", number(row.pressure)},
+                               {"pressure_Pa", row.pressure},
                                {"measure", row.name},
                                {"unit", row.unit},
                                {"n", spread.n},
                                {"mean", spread.mean},
-                               {"standard_deviation", number(spread.standard_deviation)},
-                               {"standard_error", number(spread.standard_error)},
-                               {"low_95", number(spread.low)},
-                               {"high_95", number(spread.high)}});
+                               {"standard_deviation", spread.standard_deviation},
+                               {"standard_error", spread.standard_error},
+                               {"low_95", spread.low},
+                               {"high_95", spread.high}});
   }
   json["differences"] = Json::array();
   for (const ensemble::Comparison& each : summary.comparisons) {
-    json["differences"].push_back({{"pressure_Pa", number(each.pressure)},
+    json["differences"].push_back({{"pressure_Pa", each.pressure},
                                    {"measure", each.name},
                                    {"unit", each.unit},
-                                   {"difference", number(each.difference.value)},
-                                   {"standard_error", number(each.difference.standard_error)},
-                                   {"low_95", number(each.difference.low)},
-                                   {"high_95", number(each.difference.high)}});
+                                   {"difference", each.difference.value},
+                                   {"standard_error", each.difference.standard_error},
+                                   {"low_95", each.difference.low},
+                                   {"high_95", each.difference.high}});
   }
   json["cohesive"] = Json::array();  // of each group: its factors of a footing go with the tangent angle
   for (const calibrate::Cohesive cohesive : summary.cohesive_groups)
@@ -76,12 +74,9 @@ Json as_json(const Ensemble& ensemble, const std::vector<ensemble::TestOf>& test
 
 std::string as_csv(const Ensemble& ensemble, const ensemble::Summary& summary) {
   std::string text = "group,pressure_Pa,measure,unit,n,mean,standard_deviation,standard_error,low_95,high_95\n";
-  const auto quoted = [](const std::string& name) {
-    return name.find_first_of(",\"\n") == std::string::npos ? name : "\"" + name + "\"";
-  };
   for (const ensemble::Row& row : summary.rows) {
     const Spread& spread = row.spread;
-    text += quoted(ensemble.names[row.group]) + "," + csv_cell(row.pressure) + "," + row.name + "," + row.unit + "," +
+    text += csv_cell(ensemble.names[row.group]) + "," + csv_cell(row.pressure) + "," + row.name + "," + row.unit + "," +
             std::to_string(spread.n) + "," + csv_cell(spread.mean) + "," + csv_cell(spread.standard_deviation) + "," +
             csv_cell(spread.standard_error) + "," + csv_cell(spread.low) + "," + csv_cell(spread.high) + "\n";
   }
@@ -141,9 +136,7 @@ std::string as_table(const Ensemble& ensemble, const ensemble::Summary& summary)
 void write_summary(const std::string& folder, const Ensemble& ensemble, const std::vector<ensemble::TestOf>& tests,
                    const ensemble::Summary& summary, const std::vector<std::string>& failures) {
   const auto file = [&](const char* name) { return (fs::path(folder) / name).string(); };
-  io::publish_text(
-      file("summary.json"),
-      as_json(ensemble, tests, summary, failures).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::publish_text(file("summary.json"), json_text(as_json(ensemble, tests, summary, failures)));
   io::publish_text(file("summary.csv"), as_csv(ensemble, summary));
 }
 

@@ -55,16 +55,12 @@ std::string described(const FitArguments& arguments, const FitSetup& setup) {
                   {"recipe", setup.recipe.empty() ? "" : text_of(setup.recipe)},
                   {"specimen_count", setup.specimen_count},
                   {"batch", arguments.batch.value_or(8)}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
-  if (arguments.folder.empty()) {
-    if (arguments.force || arguments.resume)
-      throw InputError(std::string(arguments.force ? "--force" : "--resume") +
-                       " is given without -o; allowed: with -o; name the folder");
-    return;
-  }
+  expect_output_given(arguments.folder, {{"--force", arguments.force}, {"--resume", arguments.resume}}, "folder");
+  if (arguments.folder.empty()) return;
   const std::string own = (fs::path(arguments.folder) / "asked.json").string();
   const std::string text = described(arguments, setup);
   if (arguments.resume && fs::exists(own)) {
@@ -78,9 +74,7 @@ void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
   io::expect_output(own, arguments.force, {}, ", --resume to go on with the fit");
   for (const char* part : {"tests", "predictions"}) {
     if (part == std::string("predictions") && !setup.predicts) continue;
-    make_folder((fs::path(arguments.folder) / part).string());
-    for (const auto& entry : fs::directory_iterator(fs::path(arguments.folder) / part))
-      if (entry.path().extension() == ".json") fs::remove(entry.path());
+    make_folder_without_json((fs::path(arguments.folder) / part).string());
   }
   io::publish_text(own, text);
 }

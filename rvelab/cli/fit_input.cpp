@@ -49,11 +49,10 @@ NamedCurve named_curve(const std::string& word) {
 }
 
 void read_specimens(FitSetup& setup, const FitArguments& arguments) {
-  auto words = arguments.specimens;
-  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
-  if (arguments.recipe.has_value() == !words.empty())
+  const bool named = !arguments.specimens.empty() || !arguments.more.empty();
+  if (arguments.recipe.has_value() == named)
     throw InputError(std::string("fit: ") +
-                     (words.empty() ? "no specimen is given" : "--recipe and --specimen are both given") +
+                     (!named ? "no specimen is given" : "--recipe and --specimen are both given") +
                      "; allowed: --specimen 'S_*.h5', or --recipe RECIPE with --count; give one of them");
   if (arguments.recipe && arguments.same_specimens)
     throw InputError(
@@ -66,7 +65,7 @@ void read_specimens(FitSetup& setup, const FitArguments& arguments) {
     return;
   }
   if (arguments.count) throw InputError("--count is given without --recipe; allowed: with --recipe; leave it out");
-  setup.files = files_of(words);
+  setup.files = files_of(arguments.specimens, arguments.more);
   for (const std::string& file : setup.files) setup.specimens.push_back(io::read_specimen(file));
   setup.specimen_count = setup.specimens.size();
 }
@@ -117,9 +116,9 @@ void add_tests_of_protocol(FitSetup& setup, const FitArguments& arguments) {
 }
 
 /// A path in a file, relative to the present folder; the name of something installed stays.
-std::string from_folder_of(const std::string& file, const std::string& path) {
+std::string path_or_name(const std::string& file, const std::string& path) {
   const bool is_name = path.find('/') == std::string::npos && path.find('.') == std::string::npos;
-  return is_name ? path : (fs::path(file).parent_path() / path).string();
+  return is_name ? path : from_folder_of(file, path);
 }
 
 /// InputError for options that the file stands for.
@@ -137,7 +136,7 @@ void expect_options_of_file(const FitArguments& arguments) {
 
 /// What the command line says over what the file says.
 void merge(fit::SoilFile& file, FitArguments& arguments, const std::string& path) {
-  if (!arguments.recipe) arguments.recipe = from_folder_of(path, file.recipe);
+  if (!arguments.recipe) arguments.recipe = path_or_name(path, file.recipe);
   if (!arguments.count) arguments.count = file.count;
   if (!arguments.tests) arguments.tests = file.tests;
   for (const std::string& text : arguments.vary) {
@@ -175,14 +174,14 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
   setup.predicts = true;
   for (const fit::MeasuredTest& measured : file.measured) {
     ComparedTest test{.name = measured.name,
-                      .protocol = protocol_path(from_folder_of(path, measured.protocol)),
+                      .protocol = protocol_path(path_or_name(path, measured.protocol)),
                       .settings = measured.assignments(),
                       .pressure = measured.pressure.value_or(0),
                       .targets = measured.targets,
                       .curves = {},
                       .predict = measured.predict};
     if (!measured.curve.empty())
-      test.curves = fit::read_curves(from_folder_of(path, measured.curve), measured.selection, tell);
+      test.curves = fit::read_curves(path_or_name(path, measured.curve), measured.selection, tell);
     setup.tests.push_back(std::move(test));
   }
   if (std::all_of(setup.tests.begin(), setup.tests.end(), [](const ComparedTest& test) { return test.predict; }))
@@ -191,8 +190,7 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
 
 /// The file of several tests that `what` names, by its path or, installed, by its name; "" if it is a protocol's.
 std::string soil_file_of(const std::string& what) {
-  const bool is_path = what.find('/') != std::string::npos || what.ends_with(".toml");
-  const std::string path = is_path ? what : installed_in("fits", what);
+  const std::string path = is_path(what) ? what : installed_in("fits", what);
   return !path.empty() && fit::is_soil_file(keys::parse_toml_file(path)) ? path : "";
 }
 

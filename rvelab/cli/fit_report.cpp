@@ -169,7 +169,7 @@ void warn_fit(const FitSetup& setup, const FitOutcome& outcome, std::size_t fail
 void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::string& folder, bool json) {
   const auto failed = std::size_t(std::count_if(outcome.results.begin(), outcome.results.end(),
                                                 [](const FitResult& result) { return !result.failure.empty(); }));
-  const std::string object = as_json(setup, outcome).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string object = json_text(as_json(setup, outcome));
   if (!folder.empty()) {
     publish(folder, "fit.json", object);
     publish(folder, "fit.csv", tests_csv(setup, outcome));
@@ -245,7 +245,7 @@ void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, cons
   }
   if (!folder.empty()) publish(folder, "sweep.csv", csv);
   if (json)
-    std::cout << Json{{"sweep", list}}.dump(1, ' ', false, Json::error_handler_t::replace) << std::endl;
+    std::cout << json_text(Json{{"sweep", list}}) << std::flush;
   else
     std::cout << aligned(rows, 1000, 150) << (folder.empty() ? "" : "file  " + folder + "/sweep.csv\n") << std::flush;
   const auto failed =

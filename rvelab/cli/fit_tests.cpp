@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <thread>
 
 #include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/fit_reach.hpp"
@@ -17,7 +16,6 @@
 #include "rvelab/io/publish.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/run.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -76,16 +74,13 @@ class Specimens {
 
 /// Runs one test and adds what it gave; false: it was stopped.
 bool add_test(const FitSetup& setup, const FitTest& test, const ComparedTest& compared, Specimens& specimens,
-              ProgressLine& progress, FitResult& result) {
+              const protocol::Runner& runner, FitResult& result) {
   const Specimen& specimen = specimens.of(compared);
   const int dimension = specimen.cell.dimension;
   const protocol::Protocol protocol = protocol_of(setup, compared, test.values);
   const std::string label =
       "test " + std::to_string(test.number + 1) + (compared.name.empty() ? "" : ", " + compared.name);
-  protocol::Watch watch;
-  watch.stop = &stop_on_signals();
-  watch.on_path_point = [&](const protocol::PathPoint& reached) { progress.show(test.number, label, reached); };
-  const protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
+  const protocol::TestRun run = protocol::run_protocol(protocol, specimen, runner.watch(test.number, label));
   if (!run.complete) return false;
   result.measures.push_back(ensemble::measured(protocol, run.result, dimension));
   for (const fit::Curve& measured : compared.curves) {
@@ -97,13 +92,13 @@ bool add_test(const FitSetup& setup, const FitTest& test, const ComparedTest& co
 }
 
 /// Makes the tests of one set of parameters; none: they were stopped.
-std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, ProgressLine& progress) {
+std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, const protocol::Runner& runner) {
   FitResult result;
   Specimens specimens(setup, test);
   for (const ComparedTest& compared : setup.tests) {
     if (compared.predict && !test.predicting) continue;
     try {
-      if (!add_test(setup, test, compared, specimens, progress, result)) return std::nullopt;
+      if (!add_test(setup, test, compared, specimens, runner, result)) return std::nullopt;
     } catch (const Interrupted&) {
       return std::nullopt;
     } catch (const Error& error) {
@@ -121,11 +116,7 @@ Json numbers(const std::vector<std::vector<double>>& lists) {
 
 std::vector<std::vector<double>> read_numbers(const Json& rows) {
   std::vector<std::vector<double>> lists;
-  for (const Json& row : rows) {
-    lists.emplace_back();
-    for (const Json& value : row)
-      lists.back().push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
-  }
+  for (const Json& row : rows) lists.push_back(numbers_in(row));
   return lists;
 }
 
@@ -158,7 +149,7 @@ void keep(const std::string& path, const FitTest& test, const FitResult& result)
             {"curves", numbers(result.curves)},
             {"features", features_of(result)},
             {"failure", result.failure}};
-  io::publish_text(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::publish_text(path, json_text(json));
 }
 
 /// The result of a test that was made before; none: there is no file. InputError if it is of another test.
@@ -220,20 +211,20 @@ void expect_runnable(const FitSetup& setup) {
 
 std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& tests, const std::string& folder,
                             unsigned threads, std::size_t planned) {
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const unsigned at_a_time = unsigned(std::min<std::size_t>(threads > 0 ? threads : cores, tests.size()));
   std::vector<std::optional<FitResult>> results(tests.size());
-  ProgressLine progress(planned);
-  for (std::size_t k = 0; k < tests.front().number; ++k) progress.done(k);
-  Workers(at_a_time).for_each_in_turn(tests.size(), [&](std::size_t k) {
-    if (stop_on_signals().load()) return;
-    if (!folder.empty()) results[k] = kept(file_of(folder, tests[k]), tests[k]);
-    if (!results[k]) {
-      results[k] = carried_out(setup, tests[k], progress);
-      if (results[k] && !folder.empty()) keep(file_of(folder, tests[k]), tests[k], *results[k]);
-    }
-    if (results[k]) progress.done(tests[k].number);
-  });
+  {
+    ProgressLine progress(planned);
+    protocol::Runner runner({threads, &stop_on_signals(), &progress}, tests.size());
+    for (std::size_t k = 0; k < tests.front().number; ++k) runner.done(k);
+    runner.each(tests.size(), [&](std::size_t k) {
+      if (!folder.empty()) results[k] = kept(file_of(folder, tests[k]), tests[k]);
+      if (!results[k]) {
+        results[k] = carried_out(setup, tests[k], runner);
+        if (results[k] && !folder.empty()) keep(file_of(folder, tests[k]), tests[k], *results[k]);
+      }
+      if (results[k]) runner.done(tests[k].number);
+    });
+  }
   std::vector<FitResult> found;
   for (auto& result : results) {
     if (!result) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/protocol/run.hpp"
+#include "rvelab/protocol/runner.hpp"
 
 namespace rvelab::cli {
 
@@ -50,16 +50,15 @@ class ProgressReport {
 /// The line of one test: stage, strain, stress ratio q/p, grain-steps per second, time left. Of several at a time: how
 /// many are done, time left, grain-steps per second of all, and the state of the one that reported last. At most five
 /// times a second. May be called from any thread.
-class ProgressLine {
+class ProgressLine : public protocol::Progress {
  public:
   /// `noun`: what the line calls them.
   explicit ProgressLine(std::size_t tests = 1, std::string noun = "tests") : noun_(std::move(noun)), tests_(tests) {}
 
   /// `name` of the test by its number, from 0; "": its stage.
-  void show(std::size_t number, const std::string& name, const protocol::PathPoint& reached);
-  /// The same for other work: the part of it that is done, 0 to 1, and its grain-steps since it began.
-  void show(std::size_t number, const std::string& name, double part, double grain_steps);
-  void done(std::size_t number);
+  void show(std::size_t number, const std::string& name, const protocol::PathPoint& reached) override;
+  void show(std::size_t number, const std::string& name, double part, double grain_steps) override;
+  void done(std::size_t number) override;
 
  private:
   struct Test {

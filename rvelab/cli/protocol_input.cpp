@@ -61,8 +61,7 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
     throw InputError(name_or_path + " is a specimen or record file and no " + noun +
                      "; allowed: the name or the file of a " + noun +
                      (recipe ? "" : ", and --specimen " + name_or_path + " beside it") + "; see rvelab protocols");
-  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
-    return expect_kind(name_or_path, kind);
+  if (is_path(name_or_path)) return expect_kind(name_or_path, kind);
   const auto all = all_installed();
   if (const auto found = all.find(name_or_path); found != all.end()) return expect_kind(found->second, kind);
   std::vector<std::string> names;
@@ -116,6 +115,25 @@ void expect_folder_of(const std::string& file) {
     throw InputError(file + ": the folder " + folder.string() +
                      " does not exist; allowed: an existing folder; make it first");
   }
+}
+
+void make_folder_without_json(const std::string& folder) {
+  make_folder(folder);
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".json") fs::remove(entry.path());
+}
+
+bool is_path(const std::string& word) { return word.find('/') != std::string::npos || word.ends_with(".toml"); }
+
+std::string from_folder_of(const std::string& file, const std::string& path) {
+  return (fs::path(file).parent_path() / path).string();
+}
+
+void expect_output_given(const std::string& output, const std::vector<std::pair<const char*, bool>>& options,
+                         const char* noun) {
+  if (!output.empty()) return;
+  for (const auto& [name, given] : options)
+    if (given) throw InputError(std::string(name) + " is given without -o; allowed: with -o; name the " + noun);
 }
 
 }  // namespace rvelab::cli

@@ -37,6 +37,17 @@ std::vector<Specimen> specimens_for(const protocol::Protocol& protocol, const st
 
 /// Makes the folder for results if it is missing, and those above it. InputError if it cannot be made.
 void make_folder(const std::string& folder);
+/// The same; files *.json that are in it are removed.
+void make_folder_without_json(const std::string& folder);
+
+/// Whether a word is a path, not the name of something installed.
+bool is_path(const std::string& word);
+/// A path in a file, relative to the present folder.
+std::string from_folder_of(const std::string& file, const std::string& path);
+
+/// InputError if one of these options is given without -o. `noun`: what -o names.
+void expect_output_given(const std::string& output, const std::vector<std::pair<const char*, bool>>& options,
+                         const char* noun);
 
 /// The files that specimens_for reads.
 std::vector<std::string> specimen_files(const protocol::Protocol& protocol, const std::vector<std::string>& files);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab::cli {
@@ -29,14 +30,10 @@ void TestOptions::add_to(CLI::App& command, const std::string& example, const st
 void TestOptions::expect_output(const std::string& output) const {
   if (std::isnan(checkpoint_every))
     throw InputError("--checkpoint-every nan is not a number of seconds; allowed: 0.001 to 1e9; leave it out");
-  if (!output.empty()) return;
-  const char* given = force                  ? "--force"
-                      : resume               ? "--resume"
-                      : share                ? "--share"
-                      : checkpoint_every > 0 ? "--checkpoint-every"
-                                             : nullptr;
-  if (given == nullptr) return;
-  throw InputError(std::string(given) + " is given without -o; allowed: with -o; name the output");
+  expect_output_given(
+      output,
+      {{"--force", force}, {"--resume", resume}, {"--share", share}, {"--checkpoint-every", checkpoint_every > 0}},
+      "output");
 }
 
 std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/io/utf8.hpp"
@@ -45,12 +46,21 @@ void Listing::add_or_why(const std::string& key, double value, const std::string
   if (std::isnan(value)) undefined_[key] = why;
 }
 
+std::string json_text(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::vector<double> numbers_in(const Json& row) {
+  std::vector<double> numbers;
+  for (const Json& value : row)
+    numbers.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+  return numbers;
+}
+
 std::string Listing::json() const {
   Json object = Json::object();
   for (const auto& line : lines_)
     if (line.form != Form::text) object[line.key] = line.value;
   if (!undefined_.empty()) object["undefined"] = undefined_;
-  return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(object);
 }
 
 std::string Listing::text() const {

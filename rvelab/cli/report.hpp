@@ -12,6 +12,11 @@ namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// Indented, ends with a newline; what is no UTF-8 becomes a replacement character.
+std::string json_text(const Json& json);
+/// An array of numbers; null is NaN.
+std::vector<double> numbers_in(const Json& row);
+
 /// Results of a command, in the order in which they were added. JSON keeps every bit of a number; the listing shows
 /// four digits, of angles three. NaN means not defined: null in JSON, "-" in the listing. Arrays are row-major.
 class Listing {

@@ -216,9 +216,7 @@ void run_test(const RunArguments& arguments) {
   const protocol::Protocol protocol =
       protocol::read_protocol(protocol_path(arguments.test.protocol), arguments.test.settings);
   arguments.test.expect_output(arguments.output);
-  auto words = arguments.specimens;
-  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
-  const auto given = files_of(words), against = files_of(arguments.against);
+  const auto given = files_of(arguments.specimens, arguments.more), against = files_of(arguments.against);
   if (arguments.progress && (given.size() > 1 || !against.empty()))
     throw InputError("--progress is given with several specimens; allowed: with one; leave it out");
   if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/threads/workers.hpp"
@@ -29,7 +30,7 @@ unsigned count_of(const char* variable, unsigned otherwise) {
 enum class State { open, elsewhere, complete, failed };
 
 /// Runs a test unless it is complete or another process has it.
-State taken(const KeptTest& test, const TestOptions& options, const std::atomic<bool>& stop) {
+State taken(const RecordedTest& test, const TestOptions& options, const std::atomic<bool>& stop) {
   try {
     const Specimen specimen = test.specimen();
     const auto store = open_store(test.file, *test.protocol, specimen, options);
@@ -66,7 +67,12 @@ Ranks launched_ranks() {
   return {};
 }
 
-bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options) {
+namespace {
+
+/// With options.share: carries out what no other process has in hand. True on the first rank, once every test is
+/// complete or has failed; it then reads them, and meets the failures again. False on other ranks, when nothing is left
+/// for them to take. True at once without options.share.
+bool shared_out(const std::vector<RecordedTest>& tests, const TestOptions& options) {
   if (!options.share) return true;
   const Ranks ranks = launched_ranks();
   const std::atomic<bool>& stop = stop_on_signals();
@@ -92,6 +98,7 @@ bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options) 
   }
 }
 
+/// As open_store; with options.share it waits where another process is just reading the file.
 std::unique_ptr<io::RecordStore> open_shared_store(const std::string& path, const protocol::Protocol& protocol,
                                                    const Specimen& specimen, const TestOptions& options) {
   while (true) {
@@ -102,6 +109,44 @@ std::unique_ptr<io::RecordStore> open_shared_store(const std::string& path, cons
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
+}
+
+}  // namespace
+
+std::optional<std::vector<std::string>> run_tests(const std::vector<RecordedTest>& tests, const TestOptions& options,
+                                                  Opening opening, const protocol::Runner::Take& take) {
+  if (!shared_out(tests, options)) return std::nullopt;
+  std::vector<std::unique_ptr<io::RecordStore>> stores(tests.size());
+  const auto open = [&](std::size_t k, const Specimen& specimen) {
+    if (!tests[k].file.empty()) stores[k] = open_shared_store(tests[k].file, *tests[k].protocol, specimen, options);
+  };
+  if (opening == Opening::all_first)
+    for (std::size_t k = 0; k < tests.size(); ++k) open(k, tests[k].specimen());
+  std::vector<const protocol::PlannedTest*> planned;
+  for (const RecordedTest& test : tests) planned.push_back(&test);
+  std::atomic<std::size_t> complete{0};
+  std::vector<std::string> failures;
+  {
+    ProgressLine progress(tests.size());
+    protocol::Runner runner({options.threads, &stop_on_signals(), &progress}, tests.size());
+    failures = runner.run(
+        planned,
+        [&](std::size_t k, protocol::TestRun&& run) {
+          take(k, std::move(run));
+          ++complete;
+        },
+        [&](std::size_t k, const Specimen& specimen, const protocol::Watch& watch) {
+          if (opening == Opening::one_by_one) open(k, specimen);
+          const auto store = std::move(stores[k]);  // closed with the test
+          return run_recorded(*tests[k].protocol, specimen, store.get(), watch);
+        });
+  }
+  const auto failed = std::size_t(
+      std::count_if(failures.begin(), failures.end(), [](const std::string& failure) { return !failure.empty(); }));
+  if (complete + failed < tests.size())
+    end_stopped(" with " + std::to_string(complete) + " of " + std::to_string(tests.size()) + " tests complete; " +
+                (tests.front().file.empty() ? "their records are not kept without -o" : "continue with --resume"));
+  return failures;
 }
 
 }  // namespace rvelab::cli

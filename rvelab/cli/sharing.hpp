@@ -1,12 +1,14 @@
-// Tests that several processes share (--share): ranks of mpirun, or shells on one machine or several that see one
-// folder. They send no messages: a test belongs to the process that holds the lock of its journal.
+// Tests whose records are kept, run side by side (protocol/runner.hpp), by this process or by several that share them
+// (--share): ranks of mpirun, or shells on one machine or several that see one folder. They send no messages: a test
+// belongs to the process that holds the lock of its journal.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rvelab/cli/recording.hpp"
+#include "rvelab/protocol/runner.hpp"
 
 namespace rvelab::cli {
 
@@ -14,24 +16,22 @@ namespace rvelab::cli {
 /// MPI, srun --mpi=pmi2). The first and only one without a launcher.
 struct Ranks {
   unsigned rank = 0, count = 1;
-  unsigned on_machine = 1;  ///< ranks beside each other on this machine, this one included
+  unsigned on_machine = 1;  ///< ranks on this machine, this one included
 };
 Ranks launched_ranks();
 
-/// A test whose records are kept.
-struct KeptTest {
-  const protocol::Protocol* protocol;
-  std::function<Specimen()> specimen;
-  std::string file;
+struct RecordedTest : protocol::PlannedTest {
+  std::string file;  ///< of its records; "": they are not kept
 };
 
-/// With options.share: carries out what no other process has in hand. True on the first rank, once every test is
-/// complete or has failed; it then reads them, and meets the failures again. False on other ranks, when nothing is left
-/// for them to take. True at once without options.share. Exit through end_stopped if it is stopped.
-bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options);
+/// When the files of records are opened, and refused: that of each test as it begins, or all before the first.
+enum class Opening { one_by_one, all_first };
 
-/// As open_store; with options.share it waits where another process is just looking at the file.
-std::unique_ptr<io::RecordStore> open_shared_store(const std::string& path, const protocol::Protocol& protocol,
-                                                   const Specimen& specimen, const TestOptions& options);
+/// Runs the tests, goes on with those that were stopped, and reads those that are complete; `take` gets each, on the
+/// thread of the test. Returns why tests could not be carried out (protocol::Runner::run). With options.share other
+/// processes take tests too: none is returned on all ranks but the first, which gets all. Ends by end_stopped after a
+/// signal.
+std::optional<std::vector<std::string>> run_tests(const std::vector<RecordedTest>& tests, const TestOptions& options,
+                                                  Opening opening, const protocol::Runner::Take& take);
 
 }  // namespace rvelab::cli

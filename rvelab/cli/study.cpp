@@ -45,13 +45,6 @@ struct Loaded {
   std::vector<std::string> inputs;
 };
 
-/// A path in a study file, relative to the present folder.
-std::string from_folder_of(const std::string& study, const std::string& path) {
-  return (fs::path(study).parent_path() / path).string();
-}
-
-bool is_path(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".toml"); }
-
 /// The study file, or a new study of a protocol, before the options of the command line are added.
 Loaded loaded(const std::string& name) {
   Loaded found;
@@ -132,11 +125,8 @@ std::vector<Specimen> read_specimens(study::Study& study, const std::string& pat
 }
 
 std::optional<StudyFolder> folder_for(const StudyArguments& arguments, const Loaded& from) {
+  expect_output_given(arguments.folder, {{"--force", arguments.force}, {"--resume", arguments.resume}}, "folder");
   if (arguments.folder.empty()) {
-    if (arguments.force || arguments.resume) {
-      throw InputError(std::string(arguments.force ? "--force" : "--resume") +
-                       " is given without -o; allowed: with -o; name the folder");
-    }
     if (!arguments.json && isatty(STDERR_FILENO) == 1) tell("the results will not be kept: no -o FOLDER is given");
     return std::nullopt;
   }
@@ -173,10 +163,7 @@ void run_study(const StudyArguments& arguments) {
     study::Keeper keeper;
     keeper.threads = arguments.threads;
     keeper.stop = &stop_on_signals();
-    keeper.on_progress = [&](std::size_t number, const std::string& name, double part, double grain_steps) {
-      if (part < 1) progress.show(number, name, part, grain_steps);
-      if (part >= 1) progress.done(number);
-    };
+    keeper.progress = &progress;
     if (folder) {
       keeper.kept = [&](const std::string& name) { return folder->piece(name); };
       keeper.keep = [&](const std::string& name, const study::Piece& piece) { folder->put(name, piece); };
@@ -188,7 +175,7 @@ void run_study(const StudyArguments& arguments) {
                 std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
                 (folder ? "continue with --resume" : "they are not kept without -o"));
   const auto summary = study::summary_of(study, prepared, pieces);
-  const std::string json = as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string json = json_text(as_json(study, summary));
   if (folder) {
     io::publish_text(folder->file("study.json"), json);
     io::publish_text(folder->file("study.csv"), as_csv(study, summary));

@@ -258,10 +258,7 @@ StudyFolder::StudyFolder(const std::string& path, const study::Study& study, io:
     return;
   }
   io::expect_output(own, existing == io::IfExists::overwrite, inputs, ", --resume to go on with the study");
-  make_folder((fs::path(path_) / "pieces").string());
-  for (const auto& entry : fs::directory_iterator(fs::path(path_) / "pieces")) {
-    if (entry.path().extension() == ".json") fs::remove(entry.path());
-  }
+  make_folder_without_json(file("pieces"));
   for (const std::string& name : results) fs::remove(file(name));
   study::Study kept = study;
   for (std::string& specimen : kept.specimens) specimen = seen_from(path_, specimen);
@@ -278,12 +275,7 @@ std::optional<study::Piece> StudyFolder::piece(const std::string& name) const {
     const Json json = Json::parse(input);
     study::Piece piece;
     piece.failure = json.at("failure").get<std::string>();
-    for (const auto& [column, values] : json.at("columns").items()) {
-      auto& numbers = piece.columns[column];
-      for (const Json& value : values) {
-        numbers.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
-      }
-    }
+    for (const auto& [column, values] : json.at("columns").items()) piece.columns[column] = numbers_in(values);
     return piece;
   } catch (const Json::exception&) {
     throw InputError(path +
@@ -295,7 +287,7 @@ void StudyFolder::put(const std::string& name, const study::Piece& piece) const 
   Json json;
   json["failure"] = piece.failure;
   json["columns"] = piece.columns;
-  io::publish_text(file("pieces/" + name + ".json"), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  io::publish_text(file("pieces/" + name + ".json"), json_text(json));
 }
 
 }  // namespace rvelab::cli

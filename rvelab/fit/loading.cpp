@@ -46,33 +46,34 @@ void take_out_glitches(const std::vector<double>& x, Rows& rows, Rows& out) {
   }
 }
 
-class Loader {
+/// Sorts the rows of readings into those of the loading and those that are left out.
+class RowSorter {
  public:
-  explicit Loader(const Readings& readings) : x_(readings.x), y_(readings.deviator), is_strain_(readings.is_strain) {
-    rows_ = rows_in_range(readings);
-    if (rows_.empty()) return;
-    const Rows all = rows_;
+  explicit RowSorter(const Readings& readings)
+      : x_(readings.x), y_(readings.deviator), is_strain_(readings.is_strain) {}
+
+  Loading sort(Rows in_range, bool with_seating) {
+    rows_ = in_range;
+    if (rows_.empty()) return found_;
     take_out_glitches(x_, rows_, found_.glitches);
     for (const std::size_t row : rows_) largest_deviator_ = std::max(largest_deviator_, deviator(row));  // not of NaN
-    if (!readings.from) leave_out_seating();
+    if (!with_seating) leave_out_seating();
     keep_up_to_largest();
     leave_out_end();
-    if (rows_.empty()) return;
+    if (rows_.empty()) return found_;
     learn_sensor();
     walk();
     join_near();
-    for (const std::size_t row : all)
-      if (row > rows_.back() && !is_in(found_.glitches, row)) found_.after.push_back(row);
+    const Rows& glitches = found_.glitches;
+    for (const std::size_t row : in_range)
+      if (row > rows_.back() && std::find(glitches.begin(), glitches.end(), row) == glitches.end())
+        found_.after.push_back(row);
     for (const LoadingPoint& point : found_.points)
       if (point.rows.size() > 1) found_.joined.insert(found_.joined.end(), point.rows.begin(), point.rows.end());
+    return found_;
   }
-  Loading found() && { return std::move(found_); }
 
  private:
-  static bool is_in(const Rows& rows, std::size_t row) {
-    return std::find(rows.begin(), rows.end(), row) != rows.end();
-  }
-
   double deviator(std::size_t row) const { return row < y_.size() ? y_[row] : std::nan(""); }
 
   /// Rows before contact; of a stress, those that are not above zero.
@@ -210,6 +211,8 @@ class Loader {
 
 }  // namespace
 
-Loading loading_of(const Readings& readings) { return Loader(readings).found(); }
+Loading loading_of(const Readings& readings) {
+  return RowSorter(readings).sort(rows_in_range(readings), readings.from.has_value());
+}
 
 }  // namespace rvelab::fit

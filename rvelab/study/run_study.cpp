@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <mutex>
-#include <thread>
 
 #include "rvelab/error.hpp"
 #include "rvelab/study/measures.hpp"
-#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::study {
 namespace {
@@ -17,7 +15,7 @@ class Running {
       : study_(study),
         prepared_(prepared),
         keeper_(keeper),
-        team_(keeper.threads > 0 ? keeper.threads : std::max(1u, std::thread::hardware_concurrency())),
+        runner_(keeper),
         spans_(longest_increments(prepared.reference, prepared.points)) {}
 
   Pieces run() {
@@ -52,33 +50,33 @@ class Running {
     return first_number(s) + (points() + 1) * repeats() + point;
   }
 
-  void tell(std::size_t number, const std::string& name, double part, double grain_steps) {
-    const std::lock_guard lock(mutex_);
-    if (keeper_.on_progress) keeper_.on_progress(number, name, part, grain_steps);
+  /// Where it is stopped, what follows does not begin.
+  void each(std::size_t count, const std::function<void(std::size_t)>& one) {
+    if (!runner_.each(count, one)) throw Interrupted();
   }
 
   void take_kept() {
-    const auto take = [&](const std::string& piece, std::size_t number, std::size_t point) {
+    const auto take = [&](const std::string& piece, std::size_t number) {
       auto found = keeper_.kept ? keeper_.kept(piece) : std::nullopt;
       if (!found) return;
       pieces_.by_name[piece] = std::move(*found);
-      tell(number, name(point), 1, 0);
+      runner_.done(number);
     };
     for (std::size_t s = 1; s <= prepared_.specimens.size(); ++s) {
       for (std::size_t point = 0; point <= points(); ++point) {
-        for (std::size_t r = 1; r <= repeats(); ++r) take(path_piece(point, s, r), path_number(point, s, r), point);
-        if (study_.increments > 0) take(increments_piece(point, s), increments_number(point, s), point);
+        for (std::size_t r = 1; r <= repeats(); ++r) take(path_piece(point, s, r), path_number(point, s, r));
+        if (study_.increments > 0) take(increments_piece(point, s), increments_number(point, s));
       }
     }
   }
 
-  void put(const std::string& piece_name, Piece piece, std::size_t number, std::size_t point) {
+  void put(const std::string& piece_name, Piece piece, std::size_t number) {
     {
       const std::lock_guard lock(mutex_);
       if (keeper_.keep) keeper_.keep(piece_name, piece);
       pieces_.by_name[piece_name] = std::move(piece);
     }
-    tell(number, name(point), 1, 0);
+    runner_.done(number);
   }
 
   bool increments_missing(std::size_t s) const {
@@ -89,19 +87,6 @@ class Running {
     return false;
   }
 
-  protocol::Watch watch(std::size_t number, std::size_t point) {
-    protocol::Watch watch;
-    watch.stop = keeper_.stop;
-    watch.on_path_point = [this, number, point,
-                           first = std::optional<std::uint64_t>()](const protocol::PathPoint& reached) mutable {
-      if (!first) first = reached.rve.grain_steps();
-      const double planned = double(std::max<std::size_t>(reached.records_planned, 1));
-      const double part = std::min(0.999, double(reached.result.records.size()) / planned);
-      tell(number, name(point), part, double(reached.rve.grain_steps() - *first));
-    };
-    return watch;
-  }
-
   /// The path with the reference settings: its states, and its piece as the first repeat of the reference.
   void run_reference_path(std::size_t s) {
     const std::size_t number = repeats() > 0 ? path_number(0, s, 1) : increments_number(0, s);
@@ -109,7 +94,7 @@ class Running {
     ReferencePath path;
     try {
       path = reference_path(prepared_.reference, prepared_.specimens[s - 1], std::size_t(study_.increments), spans_,
-                            watch(number, 0));
+                            runner_.watch(number, name(0)));
     } catch (const InputError&) {
       throw;
     } catch (const Interrupted&) {
@@ -119,14 +104,15 @@ class Running {
     }
     states_ = std::move(path.states);
     if (repeats() == 0 || there(path_piece(0, s, 1))) return;
-    put(path_piece(0, s, 1), measured_path(path.run, processor_seconds() - begin), number, 0);
+    put(path_piece(0, s, 1), measured_path(path.run, processor_seconds() - begin), number);
   }
 
   void run_path(std::size_t point, std::size_t s, std::size_t repeat) {
     const std::size_t number = path_number(point, s, repeat);
     try {
       const Specimen specimen = perturbed(prepared_.specimens[s - 1], repeat);
-      put(path_piece(point, s, repeat), whole_path(protocol(point), specimen, watch(number, point)), number, point);
+      put(path_piece(point, s, repeat), whole_path(protocol(point), specimen, runner_.watch(number, name(point))),
+          number);
     } catch (const InputError& error) {
       throw InputError(name(point) + ": " + error.what());
     }
@@ -144,7 +130,7 @@ class Running {
         paths.emplace_back([this, point, s, r] { run_path(point, s, r); });
       }
     }
-    team_.for_each_in_turn(paths.size(), [&](std::size_t k) { paths[k](); });
+    each(paths.size(), [&](std::size_t k) { paths[k](); });
     if (!with_states) return;
     if (!there(increments_piece(0, s))) answer(s);
     for (std::size_t point = 1; point <= points(); ++point) {
@@ -159,7 +145,7 @@ class Running {
     std::vector<std::string> failures(states_.size());
     std::size_t done = 0;
     double grain_steps = 0;
-    team_.for_each_in_turn(states_.size(), [&](std::size_t k) {
+    each(states_.size(), [&](std::size_t k) {
       double made = 0;
       try {
         made = make(k);
@@ -173,12 +159,12 @@ class Running {
       const double part = 0.999 * double(++done) / double(states_.size());
       const double so_far = grain_steps;
       lock.unlock();
-      tell(increments_number(point, s), name(point), part, so_far);
+      runner_.show(increments_number(point, s), name(point), part, so_far);
     });
     for (const std::string& failure : failures) {
       if (piece.failure.empty()) piece.failure = failure;
     }
-    put(increments_piece(point, s), std::move(piece), increments_number(point, s), point);
+    put(increments_piece(point, s), std::move(piece), increments_number(point, s));
   }
 
   Opening opening(std::size_t point, std::size_t s, const PathState& from) const {
@@ -237,7 +223,7 @@ class Running {
   const Study& study_;
   const Prepared& prepared_;
   const Keeper& keeper_;
-  Workers team_;
+  protocol::Runner runner_;
   std::vector<long> spans_;
   std::vector<PathState> states_;  ///< of the specimen under way
   Pieces pieces_;

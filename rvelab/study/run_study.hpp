@@ -2,25 +2,21 @@
 // apart: neither on the number of threads nor on which pieces were there before.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "rvelab/protocol/runner.hpp"
 #include "rvelab/study/measures.hpp"
 #include "rvelab/study/study.hpp"
 
 namespace rvelab::study {
 
-/// Functions that a study calls to keep its pieces and to show progress. All functions may be empty. `keep` and
-/// `on_progress` come from any thread, one call at a time.
-struct Keeper {
-  unsigned threads = 0;                                          ///< 0: one per core
+/// How a study is run, and functions that it calls to keep its pieces. They may be empty; `keep` comes from any thread,
+/// one call at a time. Progress is that of pieces, counted from 0.
+struct Keeper : protocol::RunnerOptions {
   std::function<std::optional<Piece>(const std::string&)> kept;  ///< a piece that is there by its name
   std::function<void(const std::string&, const Piece&)> keep;    ///< one that was made
-  /// Piece `number` of all, counted from 0: the part of it that is done, 0 to 1, and its grain-steps so far.
-  std::function<void(std::size_t number, const std::string& name, double part, double grain_steps)> on_progress;
-  const std::atomic<bool>* stop = nullptr;
 };
 
 struct Pieces {

@@ -5,6 +5,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "tests/catch.hpp"
 #include "tests/reference_specimen.hpp"
+#include "tests/side_by_side.hpp"
 
 using namespace rvelab;
 
@@ -29,7 +30,7 @@ Tests compressed(double pull_off_force) {
                                      "[[stage]]\nkind = \"compression\"\nto_strain = 0.025\nrecord_every = 0.0005\n",
                                  "cohesion.toml"));
   std::vector<records::TestResult> results;
-  for (const protocol::TestRun& run : calibrate::run_all(protocols, {specimen}, 2)) results.push_back(run.result);
+  for (const protocol::TestRun& run : test::run_all(protocols, {specimen}, 2)) results.push_back(run.result);
   Tests tests{calibrate::calibrate(results, 2)};
   const auto records = calibrate::last_stage(results[1]);
   tests.contacts_at_peak =

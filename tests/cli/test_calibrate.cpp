@@ -89,7 +89,7 @@ TEST_CASE("a specimen or a pressure that is given twice, and an empty list, are 
   std::filesystem::copy_file(here / "S.h5", here / "T.h5");
   for (const std::string choice : {"--every-pressure", "--pressures 20e3"}) {
     expect_mistake(here.run("calibrate biaxial --specimen S.h5 --specimen T.h5 " + choice),
-                   "--specimen T.h5 holds the same specimen as --specimen S.h5");
+                   "T.h5 holds the same specimen as S.h5");
   }
   expect_mistake(here.run("calibrate biaxial --specimen S.h5 --pressures 10e3,20e3,10e3"),
                  "--pressures holds 10000 Pa twice");

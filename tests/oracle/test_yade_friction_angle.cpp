@@ -3,6 +3,7 @@
 #include "rvelab/calibrate/calibrate.hpp"
 #include "tests/catch.hpp"
 #include "tests/oracle/reference_yade.hpp"
+#include "tests/side_by_side.hpp"
 
 TEST_CASE("five biaxial tests of YADE's dense packing give its friction angle", "[oracle][slow]") {
   using namespace rvelab;
@@ -12,7 +13,7 @@ TEST_CASE("five biaxial tests of YADE's dense packing give its friction angle", 
                                                 {std::string("test.pressure_Pa=") + pressure}));
   calibrate::check_calibratable(protocols.front());
   std::vector<records::TestResult> results;
-  for (const auto& run : calibrate::run_all(protocols, {test::yade_packing("dense")}, 0)) results.push_back(run.result);
+  for (const auto& run : test::run_all(protocols, {test::yade_packing("dense")}, 0)) results.push_back(run.result);
   const calibrate::Calibration found = calibrate::calibrate(results, 2);
 
   // YADE: 31.97 and 30.55 degrees, with a scatter of 0.01 between repeats; half a degree is the bar.

@@ -12,6 +12,7 @@
 #include "tests/catch.hpp"
 #include "tests/protocol/texts.hpp"
 #include "tests/reference_specimen.hpp"
+#include "tests/side_by_side.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -219,12 +220,12 @@ TEST_CASE("Tests at several pressures do not depend on the number of threads") {
   }
   const std::vector<Specimen> specimens{reference_specimen("dense_p10"), reference_specimen("dense_p20"),
                                         reference_specimen("dense_p30")};
-  const auto one = calibrate::run_all(protocols, specimens, 1), many = calibrate::run_all(protocols, specimens, 3);
+  const auto one = test::run_all(protocols, specimens, 1), many = test::run_all(protocols, specimens, 3);
   for (std::size_t k = 0; k < 3; ++k) expect_same(one[k].result.records, many[k].result.records);
   CHECK(one[2].result.pressure == 30e3);
-  CHECK_THROWS_AS(calibrate::run_all(protocols, {specimens[0], specimens[1]}, 1), InputError);
+  CHECK_THROWS_AS(calibrate::check_specimens(protocols, {specimens[0], specimens[1]}), InputError);
   // The error of one test is the error of all, and names its pressure.
   protocols[1] = protocol::parse_protocol(text, "test.toml", {"test.dimension=3", "test.pressure_Pa=20e3"});
-  const std::string message = input_error([&] { calibrate::run_all(protocols, specimens, 2); });
+  const std::string message = input_error([&] { test::run_all(protocols, specimens, 2); });
   CHECK(message.find("p = 20000 Pa") != std::string::npos);
 }
