@@ -33,7 +33,7 @@ KeyError key_error(const toml::source_region& place, const std::string& message)
 }
 
 toml::table parsed_value(const std::string& text, const std::string& assignment) {
-  const std::string source = assignment_prefix + assignment;
+  const std::string source = assignment_prefix + shortened(assignment, 200);
   try {
     toml::table parsed = parse_toml("value = " + text, source);
     if (parsed.size() == 1) return parsed;

@@ -26,6 +26,12 @@ std::string fault_of(const toml::node& number, const Range& range) {
   return bad.empty() ? "" : "holds " + keys::written(number) + ", which " + bad;
 }
 
+/// Raises those of missing keys too.
+void raise_all(const std::string& path, std::vector<keys::KeyError>& errors) {
+  for (auto& error : errors) error.doubt = false;
+  keys::raise(path, errors);
+}
+
 }  // namespace
 
 Keys::Keys(const toml::table& table, std::string path, std::string where)
@@ -45,8 +51,10 @@ void Keys::wrong(const std::string& name, const std::string& message) const {
   throw InputError(text);  // not reached: there is an error
 }
 
+/// The error of a key that is not there waits for finish(), as a doubt, which keys::raise passes by.
 void Keys::expect_good(const std::string& name) const {
-  if (has(name)) keys::raise(path_, *errors_);
+  if (has(name)) return keys::raise(path_, *errors_);
+  for (auto& error : *errors_) error.doubt = true;
 }
 
 double Keys::number(const std::string& name, const Range& range, bool required, double initial) {
@@ -122,7 +130,7 @@ std::string Keys::choice(const std::string& name, const std::vector<std::string>
     throw InputError(path_ + ":" + std::to_string(key.source().begin.line) + ": unknown key " + dotted(other) + "; " +
                      keys::what_was_meant(dotted(""), other, {name}));
   }
-  keys::raise(path_, *errors_);
+  raise_all(path_, *errors_);
   return word;
 }
 
@@ -205,7 +213,7 @@ std::vector<Keys> Keys::tables(const std::string& name) {
 
 void Keys::finish() {
   reader_.finish();
-  keys::raise(path_, *errors_);
+  raise_all(path_, *errors_);
 }
 
 }  // namespace mpm
