@@ -167,17 +167,4 @@ void check_parameters(const ContactModel& model, const Damping& damping, const s
   findings.raise();
 }
 
-std::string in_words(const Interval& i) {
-  TextStream words;
-  if (i.low == -no_bound && i.high == no_bound)
-    words << "any finite number";
-  else if (i.low == -no_bound)
-    words << (i.high_open ? "below " : "up to ") << i.high;
-  else if (i.high == no_bound)
-    words << (i.low_open ? "> " : ">= ") << i.low;
-  else
-    words << (i.low_open ? "above " : "") << i.low << " to " << (i.high_open ? "below " : "") << i.high;
-  return words.str();
-}
-
 }  // namespace rvelab

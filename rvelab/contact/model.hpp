@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/contact/interval_words.hpp"
 #include "rvelab/contact/kinds.hpp"
 #include "rvelab/contact/laws.hpp"
 #include "rvelab/error.hpp"
@@ -62,9 +63,6 @@ struct LawParameter {
   Parameter parameter;
   double Material::*value;
 };
-
-/// "> 0", "0 to 10", "above 0 to below 1".
-std::string in_words(const Interval& interval);
 
 /// Those of all laws, in the order of the laws.
 const std::vector<LawParameter>& law_parameters();

@@ -19,67 +19,79 @@ using Eigen::Vector3d;
 
 constexpr std::size_t head_of_binary = 84, size_of_triangle = 50;
 
-/// Number of triangles if these are the bytes of a binary STL, else -1.
-long triangles_of_binary(const std::string& bytes) {
+/// Number of triangles if these are the bytes of a binary STL, else -1. Binary ones may begin with "solid" too.
+long count_in_binary(const std::string& bytes) {
   if (bytes.size() < head_of_binary) return -1;
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
   return bytes.size() == head_of_binary + size_of_triangle * std::size_t(count) ? long(count) : -1;
 }
 
-std::vector<Vector3d> corners_of_binary(const std::string& bytes, long count) {
-  std::vector<Vector3d> corners;
+std::vector<Triangle> triangles_of_binary(const std::string& bytes, long count) {
+  std::vector<Triangle> triangles;
   for (long t = 0; t < count; ++t) {
     float values[12];  // a normal, which follows from the corners, and these
     std::memcpy(values, bytes.data() + head_of_binary + size_of_triangle * std::size_t(t), sizeof values);
-    for (int c = 1; c < 4; ++c) corners.emplace_back(values[3 * c], values[3 * c + 1], values[3 * c + 2]);
+    auto& triangle = triangles.emplace_back();
+    for (int c = 0; c < 3; ++c) triangle[std::size_t(c)] = {values[3 * c + 3], values[3 * c + 4], values[3 * c + 5]};
   }
-  return corners;
+  return triangles;
 }
 
-std::vector<Vector3d> corners_of_text(const std::string& bytes, const std::string& where) {
+std::vector<Triangle> triangles_of_text(const std::string& bytes, const std::string& where) {
+  const auto damaged = [&](const std::string& what) {
+    throw InputError(where + ": " + what + "; the file is cut off or damaged; export it again");
+  };
   std::istringstream in(bytes);
-  std::string word;
-  if (!(in >> word) || word != "solid")
-    throw InputError(where +
-                     ": it is no STL file (neither \"solid\" nor a binary one of the size that it names); "
-                     "export the surface of the grain as STL");
-  std::vector<Vector3d> corners;
+  std::string word, name;
+  std::vector<Triangle> triangles;
+  std::size_t corners = 3;  // of the facet
+  bool ended = false;
   while (in >> word) {
-    if (word != "vertex") continue;
-    double x[3] = {};
-    for (double& each : x)
-      if (!(in >> each))
-        throw InputError(where + ": vertex " + std::to_string(corners.size() + 1) +
-                         " has no three numbers; the file is cut off or damaged; export it again");
-    corners.emplace_back(x[0], x[1], x[2]);
+    if (word == "solid" || word == "endsolid") {
+      std::getline(in, name);  // it may have any words
+      ended = word == "endsolid";
+    } else if (word == "facet") {
+      triangles.emplace_back();
+      corners = 0;
+    } else if (word == "vertex") {
+      if (corners == 3) damaged("a facet has more than three corners, or a corner lies outside of facets");
+      for (double& x : triangles.back()[corners])
+        if (!(in >> x)) damaged("a corner of facet " + std::to_string(triangles.size()) + " has no three numbers");
+      ++corners;
+    } else if (word == "endfacet" && corners != 3) {
+      damaged("facet " + std::to_string(triangles.size()) + " has " + std::to_string(corners) + " corners");
+    }
   }
-  return corners;
+  if (!ended) damaged("its last line, endsolid, is missing");
+  return triangles;
 }
 
 /// Corners at one place become one; triangles without area go.
-Mesh joined(const std::vector<Vector3d>& all, const std::string& where) {
-  Vector3d low = all.front(), high = all.front();
-  for (const Vector3d& x : all) {
-    if (!x.allFinite()) throw InputError(where + ": a corner is not finite; export the surface again");
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
+Mesh joined(const std::vector<Triangle>& triangles, const std::string& where) {
+  Vector3d low = triangles.front()[0], high = low;
+  for (const Triangle& triangle : triangles)
+    for (const Vector3d& x : triangle) {
+      if (!x.allFinite()) throw InputError(where + ": a corner is not finite; export the surface again");
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
   const double grid = 1e-6 * (high - low).maxCoeff();
   if (!(grid > 0)) throw InputError(where + ": all corners lie at one place; export the surface again");
   Mesh mesh;
   std::map<std::array<std::int64_t, 3>, int> known;
-  std::vector<int> index;
-  for (const Vector3d& x : all) {
-    std::array<std::int64_t, 3> at{};
-    for (int k = 0; k < 3; ++k) at[std::size_t(k)] = std::int64_t(std::floor((x[k] - low[k]) / grid + 0.5));
-    const auto [place, is_new] = known.emplace(at, int(mesh.corners.size()));
-    if (is_new) mesh.corners.push_back(x);
-    index.push_back(place->second);
+  for (const Triangle& triangle : triangles) {
+    std::array<int, 3> index{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vector3d& x = triangle[c];
+      std::array<std::int64_t, 3> at{};
+      for (int k = 0; k < 3; ++k) at[std::size_t(k)] = std::int64_t(std::floor((x[k] - low[k]) / grid + 0.5));
+      const auto [place, is_new] = known.emplace(at, int(mesh.corners.size()));
+      if (is_new) mesh.corners.push_back(x);
+      index[c] = place->second;
+    }
+    if (index[0] != index[1] && index[1] != index[2] && index[2] != index[0]) mesh.triangles.push_back(index);
   }
-  for (std::size_t t = 0; t + 2 < index.size(); t += 3)
-    if (index[t] != index[t + 1] && index[t + 1] != index[t + 2] && index[t + 2] != index[t])
-      mesh.triangles.push_back({index[t], index[t + 1], index[t + 2]});
   return mesh;
 }
 
@@ -116,25 +128,36 @@ Vector3d nearest_in(const Vector3d& p, const Vector3d& a, const Vector3d& b, con
 
 }  // namespace
 
-Mesh read_stl(const std::string& bytes, const std::string& where) {
-  const long count = triangles_of_binary(bytes);
-  const std::vector<Vector3d> corners = count >= 0 ? corners_of_binary(bytes, count) : corners_of_text(bytes, where);
-  if (corners.size() < 12 || corners.size() % 3 != 0)
-    throw InputError(where + ": it has " + std::to_string(corners.size()) +
-                     " corners; a closed surface has four triangles or more, of three corners each; export it again");
-  Mesh mesh = joined(corners, where);
+Mesh mesh_of(const std::vector<Triangle>& triangles, const std::string& where) {
+  if (triangles.size() < 4)
+    throw InputError(where + ": it has " + std::to_string(triangles.size()) +
+                     " triangles; a closed surface has four or more; export it again");
+  Mesh mesh = joined(triangles, where);
   expect_closed(mesh, where);
   double volume = properties_of(mesh).volume;
   if (volume < 0) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     volume = -volume;
   }
-  if (!(volume > 0)) throw InputError(where + ": its surface holds no volume; export the surface of a grain");
+  if (!(volume > 0)) throw InputError(where + ": its surface holds no volume; export the surface of a body");
   return mesh;
 }
 
+Mesh read_stl(const std::string& bytes, const std::string& where) {
+  if (const long count = count_in_binary(bytes); count >= 0) return mesh_of(triangles_of_binary(bytes, count), where);
+  std::istringstream in(bytes);
+  if (std::string first; !(in >> first) || first != "solid")
+    throw InputError(where +
+                     ": it is no STL file (neither \"solid\" nor a binary one of the size that it names); "
+                     "export the surface of the body as STL");
+  return mesh_of(triangles_of_text(bytes, where), where);
+}
+
 MassProperties properties_of(const Mesh& mesh) {
-  const Vector3d from = mesh.corners[std::size_t(mesh.triangles.front()[0])];
+  return properties_of(mesh, mesh.corners[std::size_t(mesh.triangles.front()[0])]);
+}
+
+MassProperties properties_of(const Mesh& mesh, const Vector3d& from) {
   MassProperties p;
   Vector3d first = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();  // integral of x x^T

@@ -104,7 +104,7 @@ void expect_output(const std::string& path, bool force, const std::vector<std::s
   throw InputError(path + ": is there already; allowed: a new name" + otherwise + ", or --force to overwrite it");
 }
 
-void publish_bytes(const std::string& path, std::initializer_list<std::span<const std::byte>> parts) {
+void publish_bytes(const std::string& path, std::initializer_list<std::span<const std::byte>> parts, Sync sync) {
   const std::string place = followed(path), temporary = place + ".tmp";
   expect_regular(place);
   {
@@ -112,11 +112,11 @@ void publish_bytes(const std::string& path, std::initializer_list<std::span<cons
     for (const auto bytes : parts) {
       if (!write_all(output.number(), bytes)) fail(path, temporary, errno);
     }
-    if (::fsync(output.number()) != 0) fail(path, temporary, errno);
+    if (sync == Sync::now && ::fsync(output.number()) != 0) fail(path, temporary, errno);
     // Under the lock: a second writer finds its file gone, and makes another.
     if (::rename(temporary.c_str(), place.c_str()) != 0) fail(path, temporary, errno);
   }
-  sync_folder_of(place);
+  if (sync == Sync::now) sync_folder_of(place);
 }
 
 std::string exact(double value) {
@@ -124,8 +124,8 @@ std::string exact(double value) {
   return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
 }
 
-void publish_text(const std::string& path, const std::string& text) {
-  publish_bytes(path, {std::as_bytes(std::span(text))});
+void publish_text(const std::string& path, const std::string& text, Sync sync) {
+  publish_bytes(path, {std::as_bytes(std::span(text))}, sync);
 }
 
 }  // namespace rvelab::io

@@ -33,7 +33,7 @@ KeyError key_error(const toml::source_region& place, const std::string& message)
 }
 
 toml::table parsed_value(const std::string& text, const std::string& assignment) {
-  const std::string source = assignment_prefix + assignment;
+  const std::string source = assignment_prefix + shortened(assignment, 200);
   try {
     toml::table parsed = parse_toml("value = " + text, source);
     if (parsed.size() == 1) return parsed;
@@ -187,30 +187,31 @@ std::vector<std::string> parts_of(const std::string& key) {
   return parts;
 }
 
-std::string stage_name(const toml::node& stage) {
-  const toml::table* table = stage.as_table();
+std::string name_of(const toml::node& item) {
+  const toml::table* table = item.as_table();
   if (table == nullptr) return "";
   return (*table)["name"].value_or(std::string((*table)["kind"].value_or("")));
 }
 
 /// One table of a list, by its name (a stage without one: its kind) or its number from 0.
-toml::table& find_in(toml::array* stages, const std::string& list, const std::string& which,
+toml::table& find_in(toml::array* items, const std::string& list, const std::string& which,
                      const std::string& assignment) {
   std::string known;
   std::vector<toml::table*> found;
-  if (stages != nullptr) {
-    std::size_t wanted = stages->size();
+  if (items != nullptr) {
+    std::size_t wanted = items->size();
     const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), wanted);
     const bool by_number = error == std::errc() && end == which.data() + which.size();
-    for (std::size_t k = 0; k < stages->size(); ++k) {
-      toml::node& stage = *stages->get(k);
-      known += (known.empty() ? "" : ", ") + std::to_string(k) + " (" + stage_name(stage) + ")";
-      if (stage.is_table() && (by_number ? wanted == k : stage_name(stage) == which)) found.push_back(stage.as_table());
+    for (std::size_t k = 0; k < items->size(); ++k) {
+      toml::node& item = *items->get(k);
+      const std::string name = name_of(item);
+      known += (known.empty() ? "" : ", ") + std::to_string(k) + (name.empty() ? "" : " (" + name + ")");
+      if (item.is_table() && (by_number ? wanted == k : name == which)) found.push_back(item.as_table());
     }
   }
   if (found.size() == 1) return *found[0];
   throw InputError("--set " + assignment + " names " + (found.empty() ? "no " : "several of ") + list +
-                   "; allowed: " + (known.empty() ? "none, since the protocol has no [[" + list + "]]" : known) +
+                   "; allowed: " + (known.empty() ? "none, since the file has no [[" + list + "]]" : known) +
                    "; give the name or the number of one");
 }
 
@@ -226,13 +227,13 @@ void put(toml::table& table, const std::string& key, const std::string& text, co
   node.visit([&](auto& concrete) { table.insert_or_assign(toml::key(key, source), std::move(concrete)); });
 }
 
-/// Applies one assignment to a parsed file. InputError if it has no value, or names no stage that is there.
-void assign(toml::table& file, const std::string& assignment) {
+/// Applies one assignment to a parsed file. InputError if it has no value, or names no table that is there.
+void assign(toml::table& file, const std::string& assignment, std::size_t least_names) {
   const auto equals = assignment.find('=');
   const std::string key = trimmed(assignment.substr(0, equals));
   const auto parts = parts_of(key);
-  const bool incomplete =
-      parts.size() < 2 || parts.size() > most_names || std::find(parts.begin(), parts.end(), "") != parts.end();
+  const bool incomplete = parts.size() < least_names || parts.size() > most_names ||
+                          std::find(parts.begin(), parts.end(), "") != parts.end();
   if (equals == std::string::npos || trimmed(assignment.substr(equals + 1)).empty() || incomplete) {
     throw InputError(
         "--set " + shortened(assignment) +
@@ -272,7 +273,7 @@ void assign(toml::table& file, const std::string& assignment) {
     }
     if (!inner->is_table()) {
       throw InputError("--set " + assignment + ": " + parts[next] +
-                       " is no table in the protocol; allowed: table.key=value; correct the key");
+                       " is no table in the file; allowed: table.key=value; correct the key");
     }
     table = inner->as_table();
   }
@@ -281,10 +282,11 @@ void assign(toml::table& file, const std::string& assignment) {
 
 }  // namespace
 
-void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors) {
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors,
+                std::size_t least_names) {
   for (const std::string& assignment : assignments) {
     try {
-      assign(file, assignment);
+      assign(file, assignment, least_names);
     } catch (const InputError& error) {
       errors.push_back({0, error.what(), true});
     }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/contact/model.hpp"
+#include "rvelab/contact/parameter.hpp"
 
 namespace rvelab::keys {
 
@@ -120,9 +120,11 @@ void raise(const std::string& path, std::vector<KeyError> errors);
 toml::table parse_toml_file(const std::string& path);
 toml::table parse_toml_text(const std::string& text, const std::string& path);
 
-/// Applies the assignments of the command line to a parsed file; a wrong one, without a value or of a stage that is not
-/// there, becomes an error, the others are applied.
-void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors);
+/// Applies the assignments of the command line to a parsed file; a wrong one, without a value or of a table that is not
+/// there, becomes an error, the others are applied. A table of a list goes by its name (a stage without one: its kind)
+/// or its number from 0. `least_names` before the =: 1 where whole tables may be assigned.
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors,
+                std::size_t least_names = 2);
 
 /// The right key and how the two units go together: "pressure_Pa", "1 kPa = 1000 Pa".
 struct UnitAnswer {

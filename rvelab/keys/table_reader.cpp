@@ -6,6 +6,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "rvelab/contact/interval_words.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/keys/shortened.hpp"
 
@@ -124,8 +125,8 @@ const toml::node* TableReader::find(const Key& key) {
 void TableReader::mistake(const std::string& name, const std::string& text) {
   const toml::node* node = table_.get(name);
   const KeyError error = node == nullptr
-                             ? KeyError{line_, where_ + "." + name + " " + text}
-                             : key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text);
+                             ? KeyError{line_, dotted(name) + " " + text}
+                             : key_error(node->source(), dotted(name) + " = " + written(*node) + " " + text);
   const bool told = !errors_.empty() && errors_.back().line == error.line && errors_.back().message == error.message;
   if (!told) errors_.push_back(error);  // of several entries of a list once
 }
@@ -133,7 +134,7 @@ void TableReader::mistake(const std::string& name, const std::string& text) {
 void TableReader::doubt(const std::string& name, const std::string& text) {
   const toml::node* node = table_.get(name);
   if (text.empty() || node == nullptr) return;
-  errors_.push_back(key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text));
+  errors_.push_back(key_error(node->source(), dotted(name) + " = " + written(*node) + " " + text));
   errors_.back().doubt = true;
 }
 
@@ -382,7 +383,7 @@ std::vector<const toml::table*> TableReader::tables_of(const char* name, bool re
 void TableReader::finish() {
   std::vector<std::string> names;
   for (const Key& key : known_) names.push_back(key.name);
-  const std::string prefix = where_ + ".";
+  const std::string prefix = dotted("");
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());
     if (holds(names, name)) continue;

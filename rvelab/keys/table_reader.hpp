@@ -71,7 +71,7 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
 class TableReader {
  public:
   /// `key_table`: the table as the documentation calls it, "stage.isotropic"; `where`: as messages do, with a name of
-  /// its own "stage.consolidation". `line` is said for missing keys.
+  /// its own "stage.consolidation", "" for the whole file. `line` is said for missing keys.
   TableReader(const toml::table& table, std::string key_table, std::string where, long line,
               std::vector<KeyError>& errors)
       : table_(table), key_table_(std::move(key_table)), where_(std::move(where)), line_(line), errors_(errors) {}
@@ -141,6 +141,8 @@ class TableReader {
   }
 
   bool has(const std::string& name) const { return table_.contains(name); }
+  /// A key that another reader reads.
+  void allow(const std::string& name) { known_.push_back({key_table_, name, "-", "", "", "", ""}); }
   /// A key that was asked for is there, but with another unit of the same quantity.
   bool has_in_another_unit(const std::string& name) const;
   /// Adds a mistake at a key: "where.name = value <text>", with its line; the table's if it is not there.
@@ -157,6 +159,7 @@ class TableReader {
   void finish();
 
   const std::string& where() const { return where_; }
+  const toml::table& table() const { return table_; }
   /// Adds a doubt of a key that is there: "where.name = value <text>", with its line; nothing where the text is empty.
   void doubt(const std::string& name, const std::string& text);
   std::size_t mistakes() const { return mistakes_in(errors_); }
@@ -174,6 +177,7 @@ class TableReader {
     Choices choices{};
     bool required = false;
   };
+  std::string dotted(const std::string& name) const { return where_.empty() ? name : where_ + "." + name; }
   Key asked(Asked key);
   const toml::node* find(const Key& key);
   /// The node of a key if it is there and its value is good.

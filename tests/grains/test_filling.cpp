@@ -67,7 +67,7 @@ Triangles ellipsoid(int times, const Vector3d& axes) {
 std::string as_text(const Triangles& triangles) {
   std::ostringstream out;
   out.precision(17);
-  out << "solid grain\n";
+  out << "solid a facet of a grain\n";
   for (const auto& t : triangles) {
     out << "facet normal 0 0 0\n outer loop\n";
     for (const Vector3d& x : t) out << "  vertex " << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
@@ -174,7 +174,7 @@ TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better t
 TEST_CASE("A surface that is no grain is refused with the remedy", "[grains]") {
   const Triangles cube = box({1, 1, 1});
   CHECK(refusal_of_stl("").find("export") != std::string::npos);
-  CHECK(refusal_of_stl("solid x\nendsolid\n").find("four triangles") != std::string::npos);
+  CHECK(refusal_of_stl("solid x\nendsolid\n").find("four or more") != std::string::npos);
   CHECK(refusal_of_stl("P6 a picture").find("no STL") != std::string::npos);
   Triangles open = cube;
   open.pop_back();
@@ -186,9 +186,20 @@ TEST_CASE("A surface that is no grain is refused with the remedy", "[grains]") {
   Triangles wild = cube;
   wild[3][1][0] = std::nan("");
   CHECK(refusal_of_stl(as_binary(wild)).find("not finite") != std::string::npos);
-  std::string cut = as_text(cube);
+  const std::string text = as_text(cube);
+  std::string cut = text;
   cut.resize(cut.find("vertex", 300) + 10);
   CHECK(refusal_of_stl(cut).find("cut off") != std::string::npos);
+  cut.resize(cut.find("facet", 300));
+  CHECK(refusal_of_stl(cut).find("endsolid") != std::string::npos);
+  // A facet of two corners, of four, a coordinate that is a word.
+  for (const auto& [from, to, words] : {std::array{"vertex", "vortex", "facet 1 has 2 corners"},
+                                        std::array{" endloop", "vertex 0 0 0\n", "more than three"},
+                                        std::array{"vertex 0", "vertex x", "no three numbers"}}) {
+    std::string damaged = text;
+    damaged.replace(damaged.find(from), std::string(from).size(), to);
+    CHECK(refusal_of_stl(damaged).find(words) != std::string::npos);
+  }
   std::string short_one = as_binary(cube);
   short_one.resize(short_one.size() - 20);
   CHECK(refusal_of_stl(short_one) != "");

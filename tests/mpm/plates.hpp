@@ -1,9 +1,8 @@
 // Plates under pressure as tests set them up.
 #pragma once
 
-#include <string>
-
 #include "tests/mpm/rocks.hpp"
+#include "tests/mpm/scenes.hpp"
 
 namespace mpm::test {
 
@@ -23,45 +22,10 @@ Body<D> plate_over(int axis, double height, double pressure, double mass, double
 }
 
 /// A block of soil in the plane under a plate, between rollers.
-inline const std::string pressed_block = R"(
-[scene]
-name = "pressed"
-thickness_m = 2
-[grid]
-cell_m = 0.1
-[time]
-duration_s = 0.01
-[[material]]
-name = "soil"
-kind = "elastic"
-density_kg_m3 = 2000
-young_modulus_Pa = 1e7
-[[region]]
-material = "soil"
-lower_m = [0, 0]
-upper_m = [0.4, 0.3]
-[[boundary]]
-name = "left"
-kind = "roller"
-axis = "x"
-at_m = 0
-[[boundary]]
-name = "right"
-kind = "roller"
-axis = "x"
-at_m = 0.4
-soil = "below"
-[[boundary]]
-name = "bottom"
-kind = "roller"
-axis = "y"
-at_m = 0
-[[body]]
-name = "lid"
-kind = "half_space"
-centre_m = [0, 0.3]
-normal = [0, -1]
-pressure_Pa = 1e4
-)";
+inline const std::string pressed_block =
+    head("pressed", "0.1", "0.01", 2, "thickness_m = 2\n") + soil_of("soil", "elastic", "2000", "1e7") +
+    region("soil", "[0, 0]", "[0.4, 0.3]") + boundary("left", "roller", "x", "0") +
+    boundary("right", "roller", "x", "0.4", below) + boundary("bottom", "roller", "y", "0") +
+    half_space("lid", "[0, 0.3]", "[0, -1]", "pressure_Pa = 1e4\n");
 
 }  // namespace mpm::test

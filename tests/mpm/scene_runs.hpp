@@ -1,8 +1,10 @@
 // The program on a scene in a folder of its own: runs that are started, stopped and resumed, and their files.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,28 @@
 #include "tests/folder.hpp"
 
 namespace mpm::test {
+
+/// A table of a run, history.csv or watched.csv, by the names of its columns.
+struct History {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> rows;
+  explicit History(const std::string& path) {
+    std::istringstream text(rvelab::test::bytes_of(path));
+    std::string line, cell;
+    std::getline(text, line);
+    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell);
+    while (std::getline(text, line)) {
+      rows.emplace_back();
+      for (std::istringstream row(line); std::getline(row, cell, ',');) rows.back().push_back(std::stod(cell));
+    }
+  }
+  double at(std::size_t row, const std::string& name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) throw std::runtime_error("no column " + name);
+    return rows.at(row).at(std::size_t(found - names.begin()));
+  }
+  double last(const std::string& name) const { return at(rows.size() - 1, name); }
+};
 
 struct SceneRuns {
   rvelab::test::Folder folder;
@@ -29,6 +53,11 @@ struct SceneRuns {
     more.insert(more.begin(), {scene, "-o", folder / name});
     return run(more);
   }
+  int resume(const std::string& name, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"--resume", folder / name});
+    return run(more);
+  }
+  History history(const std::string& name) const { return History(folder / (name + "/history.csv")); }
   std::string errors() const { return rvelab::test::bytes_of(folder / "err"); }
   std::string output() const { return rvelab::test::bytes_of(folder / "out"); }
   /// Two runs of at least so many files have the same bytes in each.

@@ -1,10 +1,6 @@
 // Rocks that stand in the soil at the start: what is cut out of it, and soil under pressure that stays around them.
-#include <fstream>
-
-#include "tests/catch.hpp"
-#include "tests/folder.hpp"
 #include "tests/mpm/rocks.hpp"
-#include "tools/mpm/setup/setup.hpp"
+#include "tests/mpm/scenes.hpp"
 #include "tools/mpm/step/energy.hpp"
 
 using namespace mpm;
@@ -14,32 +10,18 @@ namespace {
 
 /// A block of elastic soil of side 1 with a rock in it, its middle at (0.47, 0.52, 0.55) or (0.47, 0.52).
 template <int D>
-std::string block(const std::string& rock, const std::string& contact, const std::string& more = "") {
-  const auto vector = [](const std::string& x, const std::string& y, const std::string& z) {
-    return "[" + x + ", " + y + (D == 3 ? ", " + z : "") + "]\n";
-  };
-  return "[scene]\nname = \"block\"\ndimension = " + std::to_string(D) +
-         "\n[grid]\ncell_m = 0.125\n[time]\nduration_s = 1\ncfl = 0.3\n[initial]\nstress = \"isotropic\"\npressure_Pa "
-         "= "
-         "5e4\n[[material]]\nname = \"soil\"\nkind = \"elastic\"\ndensity_kg_m3 = 1600\nyoung_modulus_Pa = 4.6e6\n"
-         "poisson_ratio = 0.12\n[[region]]\nmaterial = \"soil\"\nlower_m = " +
-         vector("0", "0", "0") + "upper_m = " + vector("1", "1", "1") +
-         "[[rock_material]]\nname = \"basalt\"\ndensity_kg_m3 = 2600\nyoung_modulus_Pa = 1e9\n[[rock]]\nname = "
-         "\"rock\"\nmaterial = \"basalt\"\ncentre_m = " +
-         vector("0.47", "0.52", "0.55") + rock + "\n[rock_soil]\n" + contact + "\n" + more;
-}
-
-template <int D>
-std::unique_ptr<Model<D>> model_of(const std::string& scene) {
-  const rvelab::test::Folder folder;
-  std::ofstream(folder / "scene.toml") << scene;
-  return set_up<D>(read_scene(folder / "scene.toml", {}, {}), 1, folder.path());
+std::string block_with(const std::string& form, const std::string& contact, const std::string& more = "") {
+  const bool plane = D == 2;
+  return head("block", "0.125", "1\ncfl = 0.3", D) + "[initial]\nstress = \"isotropic\"\npressure_Pa = 5e4\n" +
+         soil_of("soil", "elastic", "1600", "4.6e6", "poisson_ratio = 0.12\n") +
+         region("soil", plane ? "[0, 0]" : "[0, 0, 0]", plane ? "[1, 1]" : "[1, 1, 1]") + basalt("1e9") +
+         rock("rock", plane ? "[0.47, 0.52]" : "[0.47, 0.52, 0.55]", form) + "\n[rock_soil]\n" + contact + "\n" + more;
 }
 
 /// Volume and centre of mass of the soil are those of the block without the rock.
 template <int D>
 void expect_cut(const std::string& rock, double tolerance, double off = 0.05) {
-  const auto model = model_of<D>(block<D>(rock, "friction = 0.3"));
+  const auto model = model_of<D>(block_with<D>(rock, "friction = 0.3"));
   const double stone = model->solver.rocks->shapes[0].volume();
   const Vec<D> at = model->solver.rocks->all[0].body.centre;
   double volume = 0, least = 1e300;
@@ -68,13 +50,12 @@ double way_at_rest(const std::string& contact) {
     const auto along = [&](const char* value) {
       std::string text = "[";
       for (int i = 0; i < 3; ++i) text += std::string(i == 0 ? "" : ", ") + (i == axis ? value : "0");
-      return text + "]\n";
+      return text + "]";
     };
-    walls += std::string("[[boundary]]\nname = \"low") + axis_names[axis] + "\"\nkind = \"roller\"\naxis = \"" +
-             axis_names[axis] + "\"\nat_m = 0\n[[body]]\nname = \"" + names[axis] +
-             "\"\nkind = \"half_space\"\ncentre_m = " + along("1") + "normal = " + along("-1") + "pressure_Pa = 5e4\n";
+    walls += boundary(std::string("low") + axis_names[axis], "roller", axis_names[axis], "0") +
+             half_space(names[axis], along("1"), along("-1"), "pressure_Pa = 5e4\n");
   }
-  const auto model = model_of<3>(block<3>("radius_m = 0.32", contact, walls));
+  const auto model = model_of<3>(block_with<3>("radius_m = 0.32", contact, walls));
   auto& solver = model->solver;
   for (int step = 0; step < 300; ++step) solver.step(solver.stable_step());
   double way = 0;
@@ -189,7 +170,7 @@ TEST_CASE(
 }
 
 TEST_CASE("balls beside a rock in the soil reach it, and those under a rock that lies on the soil stay alike") {
-  const auto inside = model_of<3>(block<3>("radius_m = 0.3", "contact = \"ghost\""));
+  const auto inside = model_of<3>(block_with<3>("radius_m = 0.3", "contact = \"ghost\""));
   const Balls beside = balls_beside(*inside);
   CHECK(beside.farthest < 1e-12);
   CHECK(beside.most > 1.2 * beside.least);

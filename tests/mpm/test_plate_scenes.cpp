@@ -1,125 +1,32 @@
 // Plates under pressure in scenes: stress of soil and rocks, areas and masses, the end of the pressure, runs that are
 // stopped and resumed.
-#include <algorithm>
-#include <sstream>
-
 #include "tests/mpm/plates.hpp"
-#include "tests/mpm/rock_refusals.hpp"
 #include "tests/mpm/scene_runs.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 using Catch::Matchers::Contains;
-using rvelab::test::bytes_of;
-using rvelab::test::Folder;
 
 namespace {
 
 /// A cube of soil between three rollers and three plates, with a rock in its middle.
-constexpr const char* pressed_cube = R"(
-[scene]
-name = "pressed"
-dimension = 3
-[grid]
-cell_m = 0.1
-[time]
-duration_s = 0.03
-[initial]
-stress = "isotropic"
-pressure_Pa = 2e4
-[[material]]
-name = "soil"
-kind = "elastic"
-density_kg_m3 = 2000
-young_modulus_Pa = 1e7
-poisson_ratio = 0.25
-[[region]]
-material = "soil"
-lower_m = [0, 0, 0]
-upper_m = [0.6, 0.6, 0.6]
-[[boundary]]
-name = "left"
-kind = "roller"
-axis = "x"
-at_m = 0
-[[boundary]]
-name = "front"
-kind = "roller"
-axis = "y"
-at_m = 0
-[[boundary]]
-name = "bottom"
-kind = "roller"
-axis = "z"
-at_m = 0
-[[body]]
-name = "right"
-kind = "half_space"
-centre_m = [0.6, 0, 0]
-normal = [-1, 0, 0]
-pressure_Pa = 2e4
-[[body]]
-name = "back"
-kind = "half_space"
-centre_m = [0, 0.6, 0]
-normal = [0, -1, 0]
-pressure_Pa = 2e4
-[[body]]
-name = "top"
-kind = "half_space"
-centre_m = [0, 0, 0.6]
-normal = [0, 0, -1]
-pressure_Pa = 2e4
-[[rock_material]]
-name = "basalt"
-density_kg_m3 = 2700
-young_modulus_Pa = 1e8
-[[rock]]
-name = "stone"
-material = "basalt"
-radius_m = 0.16
-centre_m = [0.3, 0.3, 0.3]
-[rock_soil]
-rough = true
-[output]
-history_every_s = 0.001
-frame_every_s = 0.006
-checkpoint_every_s = 0.006
-)";
-
-template <int D>
-std::unique_ptr<Model<D>> plates_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
-  const Folder folder;
-  std::ofstream(folder / "scene.toml") << text;
-  return set_up<D>(read_scene(folder / "scene.toml", {}, assignments), 1, folder.path());
-}
-
-/// The columns of a history.
-struct History {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> rows;
-  explicit History(const std::string& path) {
-    std::istringstream text(bytes_of(path));
-    std::string line, cell;
-    std::getline(text, line);
-    for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell);
-    while (std::getline(text, line)) {
-      rows.emplace_back();
-      for (std::istringstream row(line); std::getline(row, cell, ',');) rows.back().push_back(std::stod(cell));
-    }
-  }
-  double at(std::size_t row, const std::string& name) const {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) throw std::runtime_error("no column " + name);
-    return rows.at(row).at(std::size_t(found - names.begin()));
-  }
-};
+const std::string pressed_cube =
+    head("pressed", "0.1", "0.03", 3) + "[initial]\nstress = \"isotropic\"\npressure_Pa = 2e4\n" +
+    soil_of("soil", "elastic", "2000", "1e7", "poisson_ratio = 0.25\n") +
+    region("soil", "[0, 0, 0]", "[0.6, 0.6, 0.6]") + boundary("left", "roller", "x", "0") +
+    boundary("front", "roller", "y", "0") + boundary("bottom", "roller", "z", "0") +
+    half_space("right", "[0.6, 0, 0]", "[-1, 0, 0]", "pressure_Pa = 2e4\n") +
+    half_space("back", "[0, 0.6, 0]", "[0, -1, 0]", "pressure_Pa = 2e4\n") +
+    half_space("top", "[0, 0, 0.6]", "[0, 0, -1]", "pressure_Pa = 2e4\n") + basalt() +
+    rock("stone", "[0.3, 0.3, 0.3]", "radius_m = 0.16\n") +
+    "[rock_soil]\nrough = true\n"
+    "[output]\nhistory_every_s = 0.001\nframe_every_s = 0.006\ncheckpoint_every_s = 0.006\n";
 
 }  // namespace
 
 TEST_CASE("the mean stress of soil and a rock in it is that of the plates around them") {
   constexpr double p = 2e4;
-  const auto model = plates_of<3>(pressed_cube, {"time.pic_fraction=1"});
+  const auto model = model_of<3>(pressed_cube, set("time.pic_fraction=1"));
   auto& solver = model->solver;
   const auto& rocks = *solver.rocks;
   Mat<3> sum = Mat<3>::Zero(), of_rock = Mat<3>::Zero();
@@ -148,20 +55,19 @@ TEST_CASE("the mean stress of soil and a rock in it is that of the plates around
 }
 
 TEST_CASE("plates of a scene: areas between rollers, half-spaces and periodic sides, and masses of a cell of soil") {
-  const auto plane = plates_of<2>(pressed_block);
+  const auto plane = model_of<2>(pressed_block);
   const auto& lid = *plane->solver.bodies.all[0].plate;
   CHECK(lid.area == Approx(2 * 0.4).epsilon(1e-14));
   CHECK(lid.mass == Approx(2000 * 0.8 * 0.1).epsilon(1e-12));
-  const auto given = plates_of<2>(pressed_block, {"body.lid.area_m2=0.7", "body.lid.plate_mass_kg=5"});
+  const auto given = model_of<2>(pressed_block, set({"body.lid.area_m2=0.7", "body.lid.plate_mass_kg=5"}));
   CHECK(given->solver.bodies.all[0].plate->area == 0.7);
   CHECK(given->solver.bodies.all[0].plate->mass == 5);
-  const auto cube = plates_of<3>(pressed_cube);
+  const auto cube = model_of<3>(pressed_cube);
   for (const auto& body : cube->solver.bodies.all) CHECK(body.plate->area == Approx(0.36).epsilon(1e-14));
-  auto round = pressed_block;
-  const auto from = round.find("[[boundary]]"), to = round.find("[[boundary]]\nname = \"bottom\"");
-  round.replace(from, to - from,
-                "[[boundary]]\nname = \"sides\"\nkind = \"periodic\"\naxis = \"x\"\nat_m = 0\nto_m = 0.4\n");
-  CHECK(plates_of<2>(round)->solver.bodies.all[0].plate->area == Approx(0.8).epsilon(1e-14));
+  const auto round =
+      edited(edited(pressed_block, boundary("left", "roller", "x", "0"), ""),
+             boundary("right", "roller", "x", "0.4", below), boundary("sides", "periodic", "x", "0", "to_m = 0.4\n"));
+  CHECK(model_of<2>(round)->solver.bodies.all[0].plate->area == Approx(0.8).epsilon(1e-14));
 }
 
 TEST_CASE("a plate whose pressure ends keeps its place, and then has its motion") {
@@ -202,10 +108,10 @@ TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads
   for (const char* stop : {"0.0043", "0.0111", "0.0155"}) {  // pressed, held, under way
     const std::string name = "stopped_" + std::string(stop);
     REQUIRE(start(name, {"-j", "1", "--stop-at", stop}) == 0);
-    REQUIRE(bench.run({"--resume", bench.folder / name, "-j", "3"}) == 0);
+    REQUIRE(bench.resume(name, {"-j", "3"}) == 0);
     bench.expect_same("one", name, 10);
   }
-  const History history(bench.folder / "one/history.csv");
+  const auto history = bench.history("one");
   double held = NAN;
   for (std::size_t k = 0; k < history.rows.size(); ++k) {
     const double t = history.at(k, "time_s"), z = history.at(k, "top.displacement_z_m");
@@ -217,11 +123,10 @@ TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads
     // A ramp of a millisecond to 0.2 m/s, then on with that.
     if (t > 0.013) CHECK(z - held == Approx(-0.2 * (t - 0.0125)).epsilon(1e-6));
   }
-  const std::size_t last = history.rows.size() - 1;
   CHECK(held != 0);
-  CHECK(history.at(last, "time_s") > 0.019);
-  CHECK(history.at(last, "right.displacement_x_m") < 0);  // pressed in
-  CHECK(history.at(last, "top.force_z_N") > 2e4 * 0.36);  // squeezed
+  CHECK(history.last("time_s") > 0.019);
+  CHECK(history.last("right.displacement_x_m") < 0);  // pressed in
+  CHECK(history.last("top.force_z_N") > 2e4 * 0.36);  // squeezed
 }
 
 TEST_CASE("the program refuses a plate that is none with status 2") {

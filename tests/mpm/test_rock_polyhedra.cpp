@@ -1,9 +1,5 @@
-// Convex polyhedra as rocks, and STL files.
-#include <cstring>
-#include <sstream>
-
+// Convex polyhedra as rocks. STL files: tests/grains/test_filling.cpp.
 #include "tests/catch.hpp"
-#include "tests/folder.hpp"
 #include "tests/mpm/rock_pairs.hpp"
 
 using namespace mpm;
@@ -220,16 +216,16 @@ TEST_CASE("points of a polyhedron's surface: their areas are its area, and they 
 }
 
 TEST_CASE("surfaces that are no convex body are refused in words") {
+  const auto refused = [](const std::vector<Triangle>& surface, const std::string& words, const std::string& remedy) {
+    CHECK_THROWS_WITH(shape_of(surface), Contains(words) && Contains(remedy));
+  };
   auto surface = box({1, 1, 1});
   surface.pop_back();
-  CHECK_THROWS_WITH(shape_of(surface), Contains("the surface is open at") && Contains("repair the mesh"));
+  refused(surface, "not closed", "fill its holes");
   surface = box({1, 1, 1});
   std::swap(surface[5][0], surface[5][1]);
-  CHECK_THROWS_WITH(shape_of(surface), Contains("faces the other way"));
-  surface = box({1, 1, 1});
-  surface.resize(3);
-  CHECK_THROWS_WITH(shape_of(surface), Contains("has 3 triangles") && Contains("at least 4"));
-  CHECK_THROWS_WITH(shape_of({}), Contains("has 0 triangles"));
+  refused(surface, "turned differently", "make its normals agree");
+  refused({}, "0 triangles", "four or more");
   surface = prism(6, true);
   for (auto& triangle : surface) {
     for (auto& corner : triangle) {
@@ -237,90 +233,14 @@ TEST_CASE("surfaces that are no convex body are refused in words") {
       if (corner == Vec<3>(0, 0, -1)) corner[2] = -1.8;
     }
   }
-  CHECK_THROWS_WITH(shape_of(surface), Contains("not convex") && Contains("convex hull"));
+  refused(surface, "not convex", "convex hull");
   surface = box({1, 1, 1});
   const auto second = mapped(box({1, 1, 1}), Mat<3>::Identity(), {5, 0, 0});
   surface.insert(surface.end(), second.begin(), second.end());
-  CHECK_THROWS_WITH(shape_of(surface), Contains("not convex"));
+  refused(surface, "not convex", "convex hull");
   surface = box({1, 1, 1});
   surface[2][1][0] = std::nan("");
-  CHECK_THROWS_WITH(shape_of(surface), Contains("not a finite number"));
+  refused(surface, "not finite", "again");
   const Vec<3> a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0);
-  CHECK_THROWS_WITH(shape_of({{a, b, c}, {a, d, b}, {a, c, d}, {b, d, c}}), Contains("encloses no volume"));
-}
-
-namespace {
-
-std::string ascii_of(const std::vector<Triangle>& surface) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "solid a facet of my own\n";
-  for (const auto& triangle : surface) {
-    text << " facet normal 0 0 0\n  outer loop\n";
-    for (const auto& corner : triangle) text << "   vertex " << corner.transpose() << "\n";
-    text << "  endloop\n endfacet\n";
-  }
-  text << "endsolid a facet of my own\n";
-  return text.str();
-}
-
-std::string binary_of(const std::vector<Triangle>& surface) {
-  std::string bytes(80, ' ');
-  bytes.replace(0, 5, "solid");  // some programs write that into binary files too
-  for (int k = 0; k < 4; ++k) bytes += char(surface.size() >> (8 * k));
-  for (const auto& triangle : surface) {
-    float values[12] = {0, 0, 0};
-    for (int k = 0; k < 9; ++k) values[3 + k] = float(triangle[std::size_t(k / 3)][k % 3]);
-    bytes.append(reinterpret_cast<const char*>(values), sizeof values);
-    bytes.append(2, '\0');
-  }
-  return bytes;
-}
-
-}  // namespace
-
-TEST_CASE("an STL file gives its triangles back, ASCII and binary") {
-  const rvelab::test::Folder folder;
-  const auto surface = mapped(prism(5), Vec<3>(0.3, 0.7, 1.1).asDiagonal());
-  rvelab::test::write_bytes(folder / "ascii.stl", ascii_of(surface));
-  rvelab::test::write_bytes(folder / "binary.stl", binary_of(surface));
-  const auto ascii = read_stl(folder / "ascii.stl"), binary = read_stl(folder / "binary.stl");
-  REQUIRE(ascii.size() == surface.size());
-  REQUIRE(binary.size() == surface.size());
-  for (std::size_t t = 0; t < surface.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      CHECK(ascii[t][k] == surface[t][k]);
-      CHECK(binary[t][k] == surface[t][k].cast<float>().cast<double>());
-    }
-  }
-  CHECK(shape_of(binary).volume() == Approx(shape_of(surface).volume()).epsilon(1e-6));
-}
-
-TEST_CASE("damaged STL files are refused by name, with what is wrong") {
-  const rvelab::test::Folder folder;
-  const std::string path = folder / "rock.stl", ascii = ascii_of(box({1, 1, 1})), binary = binary_of(box({1, 1, 1}));
-  const auto refused = [&](const std::string& bytes, const std::string& words) {
-    rvelab::test::write_bytes(path, bytes);
-    CHECK_THROWS_WITH(read_stl(path), Contains(path) && Contains(words));
-    CHECK_THROWS_AS(read_stl(path), InputError);
-  };
-  CHECK_THROWS_WITH(read_stl(folder / "none.stl"), Contains("none.stl: no such file"));
-  refused("", "no STL file");
-  refused("ply\nformat ascii 1.0\n", "no STL file");
-  refused("a" + binary.substr(1, binary.size() - 20), "bytes, but");
-  refused(ascii.substr(0, ascii.size() / 2), "endsolid");
-  refused("solid\nendsolid\n", "no triangles");
-  std::string text = ascii;
-  text.replace(text.find("vertex ") + 7, 1, "x");
-  refused(text, "stands where a coordinate should");
-  text = ascii;
-  text.replace(text.find("vertex"), 6, "vortex");
-  refused(text, "2 corners");
-  text = ascii;
-  text.insert(text.find("  endloop"), "vertex 0 0 0\n");
-  refused(text, "more than three corners");
-  std::string bytes = binary;
-  const float none = std::nanf("");
-  std::memcpy(bytes.data() + 84 + 12, &none, 4);
-  refused(bytes, "not a finite number");
+  refused({{a, b, c}, {a, d, b}, {a, c, d}, {b, d, c}}, "no volume", "");
 }

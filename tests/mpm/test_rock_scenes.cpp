@@ -1,37 +1,20 @@
 // Rocks of scenes: drawn at random in a box, and from tables.
-#include <fstream>
-
-#include "tests/catch.hpp"
-#include "tests/folder.hpp"
 #include "tests/mpm/rocks.hpp"
-#include "tests/mpm/rocks_alone.hpp"
-#include "tools/mpm/setup/setup.hpp"
+#include "tests/mpm/scenes.hpp"
 
 using namespace mpm;
-using mpm::test::pi;
-using mpm::test::rocks_alone;
-using rvelab::test::Folder;
+using namespace mpm::test;
 
 namespace {
 
-template <int D>
-std::unique_ptr<Model<D>> model_of(const std::string& scene, const std::vector<std::string>& assignments = {},
-                                   const std::string& rows = "") {
-  const Folder folder;
-  std::ofstream(folder / "scene.toml") << scene;
-  std::ofstream(folder / "rocks.csv") << rows;
-  return set_up<D>(read_scene(folder / "scene.toml", {}, assignments), 1, folder.path());
-}
+const std::string drawn = rocks(
+    "mix",
+    "lower_m = [1, 2, 3]\nupper_m = [2, 3.5, 4]\nvolume_share = 0.4\ndiameters_m = [[0.3, 0.5], [0.2, 0.3], [0.12, "
+    "0.2]]\n");
 
-constexpr const char* drawn = R"(
-[[rocks]]
-name = "mix"
-material = "basalt"
-lower_m = [1, 2, 3]
-upper_m = [2, 3.5, 4]
-volume_share = 0.4
-diameters_m = [[0.3, 0.5], [0.2, 0.3], [0.12, 0.2]]
-)";
+Change with_rows(const std::string& rows, const std::vector<std::string>& assignments = {}) {
+  return {assignments, "", "", {{"rocks.csv", rows}}};
+}
 
 /// Nothing overlaps, and all is inside the box of `drawn`.
 void expect_apart(const Rocks<3>& rocks, double gap) {
@@ -56,7 +39,7 @@ void expect_apart(const Rocks<3>& rocks, double gap) {
 }  // namespace
 
 TEST_CASE("rocks are drawn to their share of the volume and their grading, inside the box and apart") {
-  const auto model = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=5", "rocks.mix.gap_m=0.002"});
+  const auto model = model_of<3>(rocks_alone(3, drawn), set({"rocks.mix.seed=5", "rocks.mix.gap_m=0.002"}));
   const auto& rocks = *model->solver.rocks;
   expect_apart(rocks, 0.002);
   const double box = 1.5, parts[] = {0.5, 0.3, 0.2}, diameters[] = {0.3, 0.2, 0.12};
@@ -77,17 +60,17 @@ TEST_CASE("rocks are drawn to their share of the volume and their grading, insid
 TEST_CASE("spheres that fill half of a box are apart, whatever the seed") {
   for (const char* seed : {"1", "2", "3", "4", "5", "6"}) {
     CAPTURE(seed);
-    const auto model = model_of<3>(
-        rocks_alone(3, drawn),
-        {"rocks.mix.volume_share=0.5", "rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.seed=" + std::string(seed)});
+    const auto model =
+        model_of<3>(rocks_alone(3, drawn), set({"rocks.mix.volume_share=0.5", "rocks.mix.diameters_m=[[0.15, 1]]",
+                                                "rocks.mix.seed=" + std::string(seed)}));
     expect_apart(*model->solver.rocks, 0);
   }
 }
 
 TEST_CASE("one seed draws one and the same rocks, another others") {
   const auto first = model_of<3>(rocks_alone(3, drawn)),
-             again = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=1"});
-  const auto other = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=2"});
+             again = model_of<3>(rocks_alone(3, drawn), set({"rocks.mix.seed=1"}));
+  const auto other = model_of<3>(rocks_alone(3, drawn), set({"rocks.mix.seed=2"}));
   const auto &a = *first->solver.rocks, &b = *again->solver.rocks, &c = *other->solver.rocks;
   REQUIRE(a.all.size() == b.all.size());
   REQUIRE(a.all.size() == c.all.size());
@@ -105,7 +88,7 @@ TEST_CASE("drawn superquadrics have the aspect, the volume and the turns that we
                                        "rocks.mix.diameters_m=[[0.25, 1]]", "rocks.mix.volume_share=0.3"};
   const auto check = [&](std::vector<std::string> more, bool aligned) {
     more.insert(more.end(), shape.begin(), shape.end());
-    const auto model = model_of<3>(rocks_alone(3, drawn), more);
+    const auto model = model_of<3>(rocks_alone(3, drawn), {more});
     const auto& rocks = *model->solver.rocks;
     expect_apart(rocks, 0);
     CHECK(rocks.all.size() == std::size_t(std::round(0.3 * 1.5 / (pi / 6 * std::pow(0.25, 3)))));
@@ -130,7 +113,8 @@ TEST_CASE("drawn superquadrics have the aspect, the volume and the turns that we
 }
 
 TEST_CASE("diameters that vary within a grading keep to it, and the volume to its share") {
-  const auto model = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.spread=0.5"});
+  const auto model =
+      model_of<3>(rocks_alone(3, drawn), set({"rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.spread=0.5"}));
   const auto& rocks = *model->solver.rocks;
   expect_apart(rocks, 0);
   double volume = 0, least = 1, most = 0;
@@ -147,29 +131,28 @@ TEST_CASE("diameters that vary within a grading keep to it, and the volume to it
 }
 
 TEST_CASE("a superquadric of equal half axes and exponents of 2 is a sphere to the bit") {
-  const auto model = model_of<3>(rocks_alone(3,
-                                             "[[rock]]\nname = \"a\"\nmaterial = \"basalt\"\nshape = \"superquadric\"\n"
-                                             "half_axes_m = [0.3, 0.3, 0.3]\ncentre_m = [0, 0, 0]\n"));
+  const auto model =
+      model_of<3>(rocks_alone(3, rock("a", "[0, 0, 0]", "shape = \"superquadric\"\nhalf_axes_m = [0.3, 0.3, 0.3]\n")));
   const auto& shape = model->solver.rocks->shapes[0];
   CHECK(shape.is_sphere());
   CHECK(shape.volume() == RockShape<3>::sphere(0.3).volume());
 }
 
 TEST_CASE("tables of rocks: place and radius, or place, half axes and turn, in the plane and in space") {
-  const std::string table = "[[rocks]]\nname = \"t\"\nmaterial = \"basalt\"\ntable = \"rocks.csv\"\n";
-  const auto discs = model_of<2>(rocks_alone(2, table), {}, "x, y, radius\n1, 2, 0.5\n\n 3 4 0.25\r\n");
+  const auto table = rocks("t", "table = \"rocks.csv\"\n");
+  const auto discs = model_of<2>(rocks_alone(2, table), with_rows("x, y, radius\n1, 2, 0.5\n\n 3 4 0.25\r\n"));
   REQUIRE(discs->solver.rocks->all.size() == 2);
   CHECK(discs->solver.rocks->all[1].body.centre == Vec<2>(3, 4));
   CHECK(discs->solver.rocks->all[0].body.mass == Approx(2700 * pi * 0.25));
-  const auto slabs = model_of<2>(rocks_alone(2, table), {"rocks.t.blockiness=[2]"}, "1,2,0.5,0.2,90\n");
+  const auto slabs = model_of<2>(rocks_alone(2, table), with_rows("1,2,0.5,0.2,90\n", {"rocks.t.blockiness=[2]"}));
   CHECK(slabs->solver.rocks->all[0].body.orientation == Approx(pi / 2));
   CHECK(slabs->solver.rocks->all[0].body.mass == Approx(2700 * pi * 0.1));
-  const auto balls = model_of<3>(rocks_alone(3, table), {}, "1,2,3,0.5\n3,4,5,0.25\n");
+  const auto balls = model_of<3>(rocks_alone(3, table), with_rows("1,2,3,0.5\n3,4,5,0.25\n"));
   CHECK(balls->solver.rocks->all[1].body.centre == Vec<3>(3, 4, 5));
   CHECK(balls->solver.rocks->all[1].body.mass == Approx(2700 * 4.0 / 3 * pi / 64));
   // A quaternion w, x, y, z of any length: a quarter about z.
   const auto blocks =
-      model_of<3>(rocks_alone(3, table), {"rocks.t.blockiness=[20, 20]"}, "1,2,3,0.3,0.2,0.1,2,0,0,2\n");
+      model_of<3>(rocks_alone(3, table), with_rows("1,2,3,0.3,0.2,0.1,2,0,0,2\n", {"rocks.t.blockiness=[20, 20]"}));
   const auto& block = blocks->solver.rocks->all[0].body;
   CHECK((block.orientation * Vec<3>::UnitX() - Vec<3>::UnitY()).norm() < 1e-12);
   CHECK(block.mass == Approx(2700 * 7.910481 * 0.006).epsilon(1e-6));

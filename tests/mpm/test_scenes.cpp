@@ -3,14 +3,12 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "tests/catch.hpp"
 #include "tests/child.hpp"
-#include "tests/folder.hpp"
-#include "tools/mpm/scene/scene.hpp"
+#include "tests/mpm/scenes.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 using rvelab::test::bytes_of;
 using rvelab::test::Child;
 using rvelab::test::Folder;
@@ -18,26 +16,6 @@ using rvelab::test::Folder;
 namespace {
 
 const std::string kept_scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
-
-/// The message of a scene that must be refused.
-std::string refusal_of(const std::string& text) {
-  const Folder folder;
-  std::ofstream(folder / "scene.toml") << text;
-  try {
-    read_scene(folder / "scene.toml", {}, {});
-  } catch (const InputError& mistake) {
-    const std::string message = mistake.what();
-    return message.substr(message.find("scene.toml"));
-  }
-  return "accepted";
-}
-
-std::string edited_block(const std::string& from, const std::string& to) {
-  std::string text = bytes_of(kept_scenes + "elastic_block.toml");
-  const auto at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
 
 }  // namespace
 
@@ -87,30 +65,22 @@ TEST_CASE("bodies are met at their surface unless told") {
 }
 
 TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy") {
-  CHECK(refusal_of(edited_block("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1")) ==
-        "scene.toml:17: unknown key time.pic_fracton; the nearest known key is time.pic_fraction; correct the name or "
-        "remove it");
-  CHECK(refusal_of(edited_block("density_kg_m3", "density_kg"))
-            .find("unknown key material.density_kg; the nearest known key is "
-                  "material.density_kg_m3") != std::string::npos);
-  CHECK(refusal_of(edited_block("kind = \"roller\"", "kind = \"rolling\"")) ==
-        "scene.toml:32: boundary.kind is \"rolling\"; the nearest allowed value is \"roller\" (allowed: roller, fixed, "
-        "absorbing, periodic)");
-  CHECK(refusal_of(edited_block("poisson_ratio = 0.3", "poisson_ratio = 0.7")).find("allowed: -0.99 to 0.499") !=
-        std::string::npos);
-  CHECK(refusal_of(edited_block("young_modulus_Pa = 1e7\n", "")).find("material.young_modulus_Pa is missing") !=
-        std::string::npos);
-  CHECK(refusal_of(edited_block("[[boundary]]", "[[boundry]]"))
-            .find("unknown key boundry; the nearest known key is boundary") != std::string::npos);
-  CHECK(refusal_of(edited_block("material = \"block\"", "material = \"blok\"")).find("nearest material is \"block\"") !=
-        std::string::npos);
-  CHECK(refusal_of(edited_block("[time]", "[time")).find("scene.toml:15:6") != std::string::npos);
-  CHECK(refusal_of(edited_block("lower_m = [0, 0]", "lower_m = [0, 0, 0]")).find("2 numbers") != std::string::npos);
-  CHECK(
-      refusal_of(edited_block("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5")).find("must be a square") !=
-      std::string::npos);
-  CHECK(refusal_of(edited_block("frame_every_s = 0.02", "networks = true")).find("name them in watched_points_m") !=
-        std::string::npos);
+  expect_said(
+      bytes_of(kept_scenes + "elastic_block.toml"),
+      {{edit("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1"),
+        {"scene.toml:17: unknown key time.pic_fracton; the nearest known key is time.pic_fraction; correct"}},
+       {edit("density_kg_m3", "density_kg"), {"material.density_kg", "material.density_kg_m3"}},
+       {edit("kind = \"roller\"", "kind = \"rolling\""),
+        {"scene.toml:32: boundary.kind = ", "rolling", "allowed: roller, fixed, absorbing, periodic",
+         "nearest is roller"}},
+       {edit("poisson_ratio = 0.3", "poisson_ratio = 0.7"), {"poisson_ratio = 0.7", "allowed: -0.99 to 0.499"}},
+       {edit("young_modulus_Pa = 1e7\n", ""), {"material.young_modulus_Pa is missing"}},
+       {edit("[[boundary]]", "[[boundry]]"), {"unknown key boundry; the nearest known key is boundary"}},
+       {edit("material = \"block\"", "material = \"blok\""), {"region.material is \"blok\"", "nearest is block"}},
+       {edit("[time]", "[time"), {"scene.toml:15: column 6"}},
+       {edit("lower_m = [0, 0]", "lower_m = [0, 0, 0]"), {"region.lower_m", "2 numbers"}},
+       {edit("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5"), {"must be a square"}},
+       {edit("frame_every_s = 0.02", "networks = true"), {"name them in watched_points_m"}}});
   // A case is held to the same keys.
   CHECK_THROWS_AS(read_scene(kept_scenes + "biaxial.toml", {"M5"}, {}), InputError);
 }

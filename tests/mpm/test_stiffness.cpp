@@ -1,13 +1,10 @@
 // The stable step of grains: the modulus of their waves as they stiffen and soften.
-#include <fstream>
-
-#include "tests/catch.hpp"
 #include "tests/child.hpp"
-#include "tests/folder.hpp"
-#include "tools/mpm/setup/setup.hpp"
+#include "tests/mpm/scenes.hpp"
 #include "tools/mpm/step/energy.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 using rvelab::test::Child;
 using rvelab::test::Folder;
 
@@ -46,50 +43,13 @@ void hertz(const Folder& folder) {
 }
 
 /// An oedometer of 2 x 2 cells with a point in each; its top comes down.
-constexpr const char* oedometer = R"(
-[scene]
-name = "oedometer"
-[grid]
-cell_m = 0.5
-follows = "top"
-[time]
-duration_s = 5
-[initial]
-stress = "isotropic"
-pressure_Pa = 20e3
-[[material]]
-name = "hertz"
-kind = "grains"
-specimens = ["hertz.h5"]
-[[region]]
-material = "hertz"
-lower_m = [0, 0]
-upper_m = [1, 1]
-points_per_cell = 1
-[[boundary]]
-name = "left"
-kind = "roller"
-axis = "x"
-at_m = 0
-[[boundary]]
-name = "right"
-kind = "roller"
-axis = "x"
-at_m = 1
-soil = "below"
-[[boundary]]
-name = "bottom"
-kind = "roller"
-axis = "y"
-at_m = 0
-[[boundary]]
-name = "top"
-kind = "roller"
-axis = "y"
-at_m = 1
-soil = "below"
-motion = [[0, 0, 0], [0.1, 0, -0.1]]
-)";
+const std::string oedometer = head("oedometer", "0.5\nfollows = \"top\"", "5") +
+                              "[initial]\nstress = \"isotropic\"\npressure_Pa = 20e3\n"
+                              "[[material]]\nname = \"hertz\"\nkind = \"grains\"\nspecimens = [\"hertz.h5\"]\n" +
+                              region("hertz", "[0, 0]", "[1, 1]", "points_per_cell = 1\n") +
+                              boundary("left", "roller", "x", "0") + boundary("right", "roller", "x", "1", below) +
+                              boundary("bottom", "roller", "y", "0") +
+                              boundary("top", "roller", "y", "1", below + "motion = [[0, 0, 0], [0.1, 0, -0.1]]\n");
 
 }  // namespace
 
@@ -133,8 +93,7 @@ TEST_CASE("the wave modulus follows grains that stiffen, and that soften again, 
 TEST_CASE("a block of Hertzian grains compressed from 20 kPa to 1 MPa stays stable with the default step") {
   const Folder folder;
   hertz(folder);
-  std::ofstream(folder / "scene.toml") << oedometer;
-  auto model = set_up<2>(read_scene(folder / "scene.toml", {}, {}), 2, folder.path());
+  auto model = set_up<2>(scene_of(oedometer, {}, folder), 2, folder.path());
   auto& solver = model->solver;
   const auto start = energy_start<2>(solver);
   const double first_step = solver.stable_step();

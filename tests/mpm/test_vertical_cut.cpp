@@ -77,7 +77,7 @@ TEST_CASE("changes that cannot be are refused before a step is made", "[mpm]") {
     CHECK(runs.start("refused", {"--set", assignment}) == 2);
     CHECK_THAT(runs.errors(), Contains(words));
   };
-  refused("change.end.material=sand", "nearest material of grains is \"soil\"");
+  refused("change.end.material=sand", "allowed: soil");
   refused("change.end.stages='''[[stage]]\nkind = \"dissolve\"\n'''", "radius_left");
   refused("change.end.at_s=-1", "at_s");
   refused("change.end.lower_m=[0, 2]", "upper_m");

@@ -6,6 +6,7 @@ room_sources(laboratory_sources pack protocol calibrate ensemble)
 # (-Os for the core, which then calls each accessor of Eigen, would save a seventh and take 1.6 times as long or more).
 target_compile_definitions(rvelab_core PRIVATE RVELAB_FEWER_KERNELS)
 target_compile_definitions(rvelab_kernel_baseline PRIVATE RVELAB_FEWER_KERNELS)
+target_compile_options(rvelab_tables PRIVATE -Os)
 target_compile_options(rvelab_keys PRIVATE -Os)
 add_library(rvelab_laboratory STATIC ${laboratory_sources})
 target_link_libraries(rvelab_laboratory PUBLIC rvelab_keys)

@@ -1,27 +1,18 @@
-// Errors that the user can correct, and how messages print numbers.
+// Errors that the user can correct, and numbers in messages, as rvelab has them.
 #pragma once
 
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <vector>
+
+#include "rvelab/error.hpp"
 
 namespace mpm {
 
-/// The program prints it in one line and ends with code 2.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using rvelab::in_words;
+using rvelab::InputError;
 
-inline std::string text_of(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-inline std::string text_of(const std::vector<double>& values) {
+inline std::string in_words(const std::vector<double>& values) {
   std::string list;
-  for (const double value : values) list += (list.empty() ? "[" : ", ") + text_of(value);
+  for (const double value : values) list += (list.empty() ? "[" : ", ") + in_words(value);
   return list + "]";
 }
 

@@ -8,7 +8,6 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/seal.hpp"
-#include "rvelab/io/publish.hpp"
 #include "rvelab/keys/file_format.hpp"
 #include "rvelab/keys/regular_file.hpp"
 
@@ -157,7 +156,7 @@ void Hdf5File::put(const std::string& name, Values values, const std::string& un
     tree_.objects.try_emplace(name.substr(0, slash));
   }
   hdf5::Object object{std::move(values), {}};
-  object.attributes.emplace("units", kept({units}, {}));
+  if (!units.empty()) object.attributes.emplace("units", kept({units}, {}));
   if (!tree_.objects.emplace(name, std::move(object)).second) throw Error(path_ + ": " + name + " is written twice");
 }
 
@@ -242,9 +241,9 @@ std::vector<std::string> Hdf5File::groups(const std::string& group) const {
   return names;
 }
 
-void publish(const std::string& path, const Hdf5File& file) {
+void publish(const std::string& path, const Hdf5File& file, Sync sync) {
   const auto bytes = file.image();
-  publish_bytes(path, {bytes, seal_of(bytes)});
+  publish_bytes(path, {bytes, seal_of(bytes)}, sync);
 }
 
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill) {

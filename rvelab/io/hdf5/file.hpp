@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rvelab/io/hdf5/tree.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::io {
 
@@ -53,9 +54,11 @@ class Hdf5File {
   /// InputError: not sealed.
   void expect_seal() const;
 
-  /// Writes values, row-major, of the given shape, with the attribute `units`.
+  /// Writes values, row-major, of the given shape, with the attribute `units`; "": without it, where names end in
+  /// units.
   template <class Scalar>
-  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units);
+  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape,
+             const std::string& units = "");
   void write_text(const std::string& name, const std::vector<std::string>& values, const Shape64& shape);
 
   /// Reads a dataset whole, row-major. InputError if it is missing, of another kind (text for numbers, floating for
@@ -101,6 +104,6 @@ class Hdf5File {
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill);
 
 /// Writes what a file holds to another path, sealed.
-void publish(const std::string& path, const Hdf5File& file);
+void publish(const std::string& path, const Hdf5File& file, Sync sync = Sync::now);
 
 }  // namespace rvelab::io

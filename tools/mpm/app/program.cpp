@@ -52,7 +52,7 @@ void check(const RunOptions& options) {
                      ": give a number of threads, or 0 for as many as the processor runs at once");
   }
   if (!(options.stop_at >= 0)) {
-    throw InputError("--stop-at " + text_of(options.stop_at) + ": give a time in s, 0 or later");
+    throw InputError("--stop-at " + in_words(options.stop_at) + ": give a time in s, 0 or later");
   }
 }
 

@@ -130,8 +130,8 @@ class Outputs {
         folder_(options.folder),
         model_(model),
         progress_(progress),
-        history_(path("history.csv"), history_header<D>(model.solver), progress.history),
-        watched_(path("watched.csv"), watched_header<D>(model), progress.watched),
+        history_(path("history.csv"), progress.history),
+        watched_(path("watched.csv"), progress.watched),
         saved_(options.resume ? model.solver.time : -1) {
     if (!options.scene_text.empty()) write_scene(folder_, options.scene_text);
   }
@@ -145,13 +145,12 @@ class Outputs {
   }
   void frame() {
     const auto& solver = model_.solver;
-    const long number = long(progress_.frame_times.size());
-    write_frame<D>(model_, folder_, number);
-    if (scene_.networks) write_networks<D>(model_, folder_, number);
-    progress_.frame_times.push_back(solver.time);
-    write_xdmf(folder_, progress_.frame_times, long(solver.points.size()), solver.fluid != nullptr);
+    auto& times = progress_.frame_times;
+    times.push_back(solver.time);
+    write_frame<D>(model_, folder_, times);
+    if (scene_.networks) write_networks<D>(model_, folder_, long(times.size()) - 1);
     if (solver.rocks) {
-      write_rock_xdmf(folder_, progress_.frame_times, solver.rocks->all.size());
+      write_rock_frame<D>(solver, folder_, times);
       write_rock_tables<D>(solver, folder_);
     }
     advance_past(solver.time, scene_.frame_every, progress_.next_frame);
@@ -179,7 +178,8 @@ class Outputs {
       check();
     } catch (const std::runtime_error& reason) {
       if (saved_ < 0) save();
-      throw std::runtime_error(reason.what() + ("; " + folder_) + " keeps the checkpoint of " + text_of(saved_) + " s");
+      throw std::runtime_error(reason.what() + ("; " + folder_) + " keeps the checkpoint of " + in_words(saved_) +
+                               " s");
     }
   }
 

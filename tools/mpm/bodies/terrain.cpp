@@ -92,7 +92,7 @@ void Terrain<D>::settle(const Keys& keys) {
   }
   constexpr double most = 5.7;  // 80 degrees
   if (!(steepest < most)) {
-    keys.wrong("heights_m", "has a slope of " + text_of(std::atan(steepest) * 180 / std::numbers::pi) +
+    keys.wrong("heights_m", "has a slope of " + in_words(std::atan(steepest) * 180 / std::numbers::pi) +
                                 " degrees; allowed: 80; smooth the heights, or put a [[body]] box or half_space there");
   }
   cosine = 1 / std::hypot(1, 1.1 * steepest);

@@ -65,16 +65,12 @@ class Grid {
     nodes.resize(std::size_t(size));
     return true;
   }
-  /// The box of a checkpoint: `low`, then `count`.
-  void restore(const std::int64_t* box) {
+  /// Room for the box that `low` and `count` have from a checkpoint.
+  void restore() {
     double size = 1;
-    for (int i = 0; i < D; ++i) {
-      low[i] = int(box[i]);
-      count[i] = int(box[D + i]);
-      size *= double(box[D + i]);
-    }
+    for (const int along : count) size *= double(along);
     if (*std::min_element(count.begin(), count.end()) < 0 || size > most)
-      throw InputError("the checkpoint has a grid of no size; start the run anew");
+      throw InputError("the checkpoint has a grid of no size; start the run again");
     nodes.resize(std::size_t(size));
   }
   /// Of nodes from..to - 1.

@@ -17,7 +17,7 @@ constexpr Ending endings[] = {
     {"_m_s2", {"m/s^2", 1e-9, 1e9}},            // a centrifuge 1e3, an impact 1e6
     {"_m_s", {"m/s", 1e-12, 1e6}},              // waves in diamond 2e4
     {"_m2", {"m^2", 1e-18, 1e18}},              //
-    {"_deg", {"degrees", 1e-9, 36000}},         // a hundred turns
+    {"_deg", {"degree", 1e-9, 36000}},          // a hundred turns
     {"_kg", {"kg", 1e-18, 1e18}},               //
     {"_Pa", {"Pa", 1e-3, 1e13}},                //
     {"_Hz", {"Hz", 1e-9, 1e9}},                 //
@@ -31,7 +31,7 @@ Range range_of(const std::string& key) {
   for (const auto& each : endings) {
     if (key.ends_with(each.ending)) return each.range;
   }
-  return {"", 1e-12, 1e12};
+  return {"1", 1e-12, 1e12};
 }
 
 }  // namespace mpm

@@ -8,7 +8,7 @@ namespace mpm {
 
 /// least: of what must be positive; most: of the magnitude of all.
 struct Range {
-  const char* unit;  ///< "" of numbers without one
+  const char* unit;  ///< "1" of numbers without one
   double least, most;
 };
 

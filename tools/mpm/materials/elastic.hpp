@@ -61,8 +61,8 @@ class Elastic : public Material<D> {
   }
   double wave_modulus() const override { return moduli_.wave(); }
   Measures measures(long) const override { return {}; }
-  void save(OutputFile&, const std::string&) const override {}  // no state beyond that of the points
-  void restore(const InputFile&, const std::string&) override {}
+  void save(Hdf5File&, const std::string&) const override {}  // no state beyond that of the points
+  void restore(const Hdf5File&, const std::string&) override {}
 
  private:
   ElasticModuli moduli_;

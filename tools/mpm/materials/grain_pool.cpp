@@ -141,8 +141,8 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     if (pressure <= 0 || brought_to(pressure, id)) return moved_to_scene(id);
     expect_ok(rvelab_release(preparation_.get(), 1, &id));
   }
-  throw InputError("a specimen at " + text_of(nearest_first.front().pressure) + " Pa does not come to " +
-                   text_of(pressure) + " Pa" + (nearest_first.size() > 1 ? ", and none of the others does" : "") +
+  throw InputError("a specimen at " + in_words(nearest_first.front().pressure) + " Pa does not come to " +
+                   in_words(pressure) + " Pa" + (nearest_first.size() > 1 ? ", and none of the others does" : "") +
                    "; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "tools/mpm/files/hdf5.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 namespace mpm {
 namespace {
@@ -195,22 +195,22 @@ double Grains<D>::grain_steps() const {
 }
 
 template <int D>
-void Grains<D>::save(OutputFile& file, const std::string& name) const {
-  file.write("materials/" + name + "/ids", ids_);
-  file.write(
-      "materials/" + name + "/state",
+void Grains<D>::save(Hdf5File& file, const std::string& name) const {
+  file.write<std::int64_t>("/materials/" + name + "/ids", ids_, {ids_.size()});
+  file.write<double>(
+      "/materials/" + name + "/state",
       std::vector<double>{wave_modulus_, double(split), double(warned), called, asked, found_.first, found_.modulus,
                           found_.compression, found_.called, grain_steps(), double(changes_made)},
       {11});
   std::vector<double> waiting;
   for (const auto& each : gathered_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
-  file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
+  file.write<double>("/materials/" + name + "/waiting", waiting, {waiting.size()});
 }
 
 template <int D>
-void Grains<D>::restore(const InputFile& file, const std::string& name) {
-  ids_ = file.read_whole("materials/" + name + "/ids");
-  const auto state = file.read("materials/" + name + "/state");
+void Grains<D>::restore(const Hdf5File& file, const std::string& name) {
+  ids_ = file.read<std::int64_t>("/materials/" + name + "/ids");
+  const auto state = file.read<double>("/materials/" + name + "/state");
   wave_modulus_ = state[0];
   split = long(state[1]);
   warned = long(state[2]);
@@ -221,7 +221,7 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   earlier_ = state[9] - grain_steps();
   found_ = {state[5], state[6], state[7], state[8]};
   changes_made = state.size() > 10 ? long(state[10]) : 0;  // runs of 2.0 had none
-  const auto waiting = file.read("materials/" + name + "/waiting");
+  const auto waiting = file.read<double>("/materials/" + name + "/waiting");
   gathered_.clear();
   for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {
     gathered_.push_back(Eigen::Map<const Mat<D>>(waiting.data() + k));

@@ -19,8 +19,8 @@ class Grains : public Material<D> {
   void advance(Point<D>* points, long count, double dt, rvelab::Workers& workers) override;
   double wave_modulus() const override { return wave_modulus_; }
   Measures measures(long point) const override;
-  void save(OutputFile& file, const std::string& name) const override;
-  void restore(const InputFile& file, const std::string& name) override;
+  void save(Hdf5File& file, const std::string& name) const override;
+  void restore(const Hdf5File& file, const std::string& name) override;
   double grain_steps() const override;
   /// Stress of each RVE as it is, Pa.
   void read_stress(Point<D>* points);

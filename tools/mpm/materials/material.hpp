@@ -6,10 +6,13 @@
 #include "rvelab/threads/workers.hpp"
 #include "tools/mpm/grid/point.hpp"
 
+namespace rvelab::io {
+class Hdf5File;
+}
+
 namespace mpm {
 
-class OutputFile;
-class InputFile;
+using rvelab::io::Hdf5File;
 
 /// Measures of a point that only some materials have; NaN: none.
 struct Measures {
@@ -28,8 +31,8 @@ class Material {
   virtual double wave_modulus() const = 0;
   virtual Measures measures(long point) const = 0;
   /// State beyond that of the points, for checkpoints; `name` is that of the material.
-  virtual void save(OutputFile& file, const std::string& name) const = 0;
-  virtual void restore(const InputFile& file, const std::string& name) = 0;
+  virtual void save(Hdf5File& file, const std::string& name) const = 0;
+  virtual void restore(const Hdf5File& file, const std::string& name) = 0;
   /// Grains times sub-steps so far; 0 for a material without grains.
   virtual double grain_steps() const { return 0; }
   /// s of wall time that was spent in grains.

@@ -1,6 +1,6 @@
 #include "tools/mpm/materials/plastic.hpp"
 
-#include "tools/mpm/files/hdf5.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 namespace mpm {
 namespace {
@@ -168,13 +168,13 @@ Measures Plastic<D>::measures(long point) const {
 }
 
 template <int D>
-void Plastic<D>::save(OutputFile& file, const std::string& name) const {
-  file.write("materials/" + name + "/plastic_strain", plastic_, {plastic_.size()});
+void Plastic<D>::save(Hdf5File& file, const std::string& name) const {
+  file.write<double>("/materials/" + name + "/plastic_strain", plastic_, {plastic_.size()});
 }
 
 template <int D>
-void Plastic<D>::restore(const InputFile& file, const std::string& name) {
-  plastic_ = file.read("materials/" + name + "/plastic_strain");
+void Plastic<D>::restore(const Hdf5File& file, const std::string& name) {
+  plastic_ = file.read<double>("/materials/" + name + "/plastic_strain");
 }
 
 template class Plastic<2>;

@@ -51,8 +51,8 @@ class Plastic : public Material<D> {
   void advance(Point<D>* points, long count, double dt, rvelab::Workers& workers) override;
   double wave_modulus() const override { return moduli_.wave(); }
   Measures measures(long point) const override;
-  void save(OutputFile& file, const std::string& name) const override;
-  void restore(const InputFile& file, const std::string& name) override;
+  void save(Hdf5File& file, const std::string& name) const override;
+  void restore(const Hdf5File& file, const std::string& name) override;
 
  private:
   ElasticModuli moduli_;

@@ -19,7 +19,7 @@ struct Progress {
 };
 
 template <int D>
-void write_checkpoint(const Model<D>& model, const Progress& progress, const std::string& folder);
+void write_checkpoint(Model<D>& model, Progress& progress, const std::string& folder);
 template <int D>
 void read_checkpoint(Model<D>& model, Progress& progress, const std::string& folder);
 

@@ -5,28 +5,24 @@
 #include <string>
 #include <vector>
 
-#include "tools/mpm/files/hdf5.hpp"
+#include "tools/mpm/output/archive.hpp"
+#include "tools/mpm/output/output.hpp"
 #include "tools/mpm/step/solver.hpp"
 
 namespace mpm {
 
-/// Energies of all rocks, contacts, virials, then the path of each rock with a name of its own.
-template <int D>
-std::string rock_columns(const Solver<D>& solver);
+/// Columns of history.csv: energies of all rocks, contacts, virials, then the path of each rock with a name of its own.
 /// `since`: s, from the row before, of which soil forces are means. before: impulses there, renewed here.
 template <int D>
-void add_rock_values(const Solver<D>& solver, double since, std::vector<double>& before, std::vector<double>& row);
+void add_rock_values(const Solver<D>& solver, double since, std::vector<double>& before, Row& row);
 template <int D>
-void write_rock_frame(const Solver<D>& solver, const std::string& path);
-void write_rock_xdmf(const std::string& folder, const std::vector<double>& times, std::size_t rocks);
+void write_rock_frame(const Solver<D>& solver, const std::string& folder, const std::vector<double>& times);
 /// rocks_NAME.csv of each [[rocks]], in the form that their key table reads.
 template <int D>
 void write_rock_tables(const Solver<D>& solver, const std::string& folder);
 
+/// InputError if the checkpoint that is read holds another number of rocks.
 template <int D>
-void write_rocks(const Solver<D>& solver, OutputFile& file);
-/// InputError if the checkpoint holds another number of rocks.
-template <int D>
-void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& folder);
+void archive_rocks(Archive& archive, Solver<D>& solver);
 
 }  // namespace mpm

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "rvelab/io/publish.hpp"
 #include "tools/mpm/output/rocks.hpp"
 #include "tools/mpm/rocks/rocks.hpp"
 
@@ -61,7 +62,8 @@ void write_rock_tables(const Solver<D>& solver, const std::string& folder) {
     table += "\n";
   }
   for (const auto& [name, table] : tables) {
-    publish_file((std::filesystem::path(folder) / ("rocks_" + name + ".csv")).string(), table.data(), table.size());
+    rvelab::io::publish_text((std::filesystem::path(folder) / ("rocks_" + name + ".csv")).string(), table,
+                             rvelab::io::Sync::later);
   }
 }
 

@@ -37,8 +37,7 @@ void check_materials(const Scene& scene, const std::string& path) {
   }
   for (const auto& region : scene.regions) {
     if (materials.contains(region.material)) continue;
-    throw InputError(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
-                     nearest_word(region.material, materials) + "\"");
+    throw InputError(path + ": region.material is \"" + region.material + "\"" + one_of(materials, region.material));
   }
 }
 
@@ -50,10 +49,8 @@ void check_changes(const Scene& scene, const std::string& path) {
     if (!names.insert(change.name).second)
       throw InputError(path + ": two changes are called " + change.name + "; rename one");
     if (grains.contains(change.material)) continue;
-    throw InputError(path + ": change." + change.name + ".material is \"" + change.material + "\"; " +
-                     (grains.empty()
-                          ? "allowed: a material of kind = \"grains\", and there is none"
-                          : "the nearest material of grains is \"" + nearest_word(change.material, grains) + "\""));
+    throw InputError(path + ": change." + change.name + ".material is \"" + change.material +
+                     "\", and no material of kind = \"grains\"" + one_of(grains, change.material));
   }
 }
 
@@ -67,7 +64,7 @@ void check_boundaries(const Scene& scene, const std::string& path) {
     expect_new(plane.name);
     planes.insert(plane.name);
     if (std::abs(plane.at / scene.cell[std::size_t(plane.axis)]) < farthest_cell) continue;
-    throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+    throw InputError(path + ": boundary." + plane.name + ".at_m is " + in_words(plane.at) +
                      ", too many cells from 0; move it nearer, or make grid.cell_m larger");
   }
   for (const auto& body : scene.bodies) expect_new(body.name);
@@ -76,14 +73,13 @@ void check_boundaries(const Scene& scene, const std::string& path) {
   }
   if (scene.follows.empty()) return;
   if (!planes.contains(scene.follows)) {
-    throw InputError(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
-                     nearest_word(scene.follows, planes) + "\"");
+    throw InputError(path + ": grid.follows is \"" + scene.follows + "\"" + one_of(planes, scene.follows));
   }
   const auto& followed = *std::find_if(scene.planes.begin(), scene.planes.end(),
                                        [&](const auto& plane) { return plane.name == scene.follows; });
   for (const auto& plane : scene.planes) {
     if (plane.axis != followed.axis || plane.name == followed.name || plane.at == 0) continue;
-    throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+    throw InputError(path + ": boundary." + plane.name + ".at_m is " + in_words(plane.at) +
                      ", and would move along with grid.follows, which shortens all cells across " +
                      axis_names[plane.axis] + "; put it at 0, or take a [[body]] in its place");
   }
@@ -113,9 +109,9 @@ double nodes_of(const Scene& scene) {
 void check_grid(const Scene& scene, const std::string& path) {
   const double nodes = nodes_of(scene), most = double(Grid<3>::most);
   if (nodes <= most) return;
-  throw InputError(path + ": grid.cell_m is " + text_of(scene.cell) + ": the box around all regions would have " +
-                   text_of(nodes) + " nodes (" + text_of(memory_of(scene, 0, nodes)) +
-                   " GB), and a scene has at most " + text_of(most) +
+  throw InputError(path + ": grid.cell_m is " + in_words(scene.cell) + ": the box around all regions would have " +
+                   in_words(nodes) + " nodes (" + in_words(memory_of(scene, 0, nodes)) +
+                   " GB), and a scene has at most " + in_words(most) +
                    "; make grid.cell_m larger, or put the regions nearer to each other");
 }
 
@@ -127,12 +123,12 @@ void check_steps(const Scene& scene, const std::string& path) {
     const double speed = std::sqrt(material.continuum.wave_modulus / material.density);
     const double steps = scene.duration * speed / (scene.cfl * cell);
     if (steps <= most_steps) continue;
-    throw InputError(path + ": time.duration_s = " + text_of(scene.duration) + " would need " + text_of(steps) +
-                     " steps of " + text_of(scene.cfl * cell / speed) + " s, in which the wave of material " +
-                     material.name + " (" + text_of(speed) + " m/s: modulus " +
-                     text_of(material.continuum.wave_modulus) + " Pa, density " + text_of(material.density) +
-                     " kg/m^3) crosses a part of a cell of " + text_of(cell) +
-                     " m (grid.cell_m, time.cfl); allowed: up to " + text_of(most_steps) +
+    throw InputError(path + ": time.duration_s = " + in_words(scene.duration) + " would need " + in_words(steps) +
+                     " steps of " + in_words(scene.cfl * cell / speed) + " s, in which the wave of material " +
+                     material.name + " (" + in_words(speed) + " m/s: modulus " +
+                     in_words(material.continuum.wave_modulus) + " Pa, density " + in_words(material.density) +
+                     " kg/m^3) crosses a part of a cell of " + in_words(cell) +
+                     " m (grid.cell_m, time.cfl); allowed: up to " + in_words(most_steps) +
                      "; make young_modulus_Pa smaller, density_kg_m3 or grid.cell_m larger, or "
                      "time.duration_s shorter");
   }
@@ -145,15 +141,15 @@ void check_sizes(const Scene& scene, const std::string& path) {
     for (std::size_t i = 0; i < scene.cell.size(); ++i) {
       if (region.grains.empty()) points *= points_along(scene, region, i);
       if (std::max(std::abs(region.lower[i]), std::abs(region.upper[i])) < farthest_cell * scene.cell[i]) continue;
-      throw InputError(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
-                       text_of(region.upper) +
+      throw InputError(path + ": " + region_name(scene, region) + " from " + in_words(region.lower) + " to " +
+                       in_words(region.upper) +
                        " m lies too many cells from 0; move it nearer, or make grid.cell_m larger");
     }
     total += points;
     if (total <= most_points) continue;
-    throw InputError(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
-                     " material points (" + text_of(memory_of(scene, points, 0)) + " GB), and a scene has at most " +
-                     text_of(most_points) + "; make grid.cell_m larger, or the region or points_per_cell smaller");
+    throw InputError(path + ": " + region_name(scene, region) + " would have " + in_words(points) +
+                     " material points (" + in_words(memory_of(scene, points, 0)) + " GB), and a scene has at most " +
+                     in_words(most_points) + "; make grid.cell_m larger, or the region or points_per_cell smaller");
   }
 }
 
@@ -197,18 +193,18 @@ void check_sides(const Scene& scene, const std::string& path) {
       const double slack = 1e-6 * scene.cell[i];
       if (!std::isnan(plane.to) && last > plane.to + slack) {
         throw InputError(path + ": points of " + region_name(scene, region) + " lie beyond boundary." + plane.name +
-                         ".to_m = " + text_of(plane.to) + "; end the region there, or set to_m to its end");
+                         ".to_m = " + in_words(plane.to) + "; end the region there, or set to_m to its end");
       }
       if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
       throw InputError(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
                        " (soil " + (plane.soil_above ? "above " : "below ") + axis_names[i] + " = " +
-                       text_of(plane.at) + " m); set soil = \"" + (plane.soil_above ? "below" : "above") +
+                       in_words(plane.at) + " m); set soil = \"" + (plane.soil_above ? "below" : "above") +
                        "\" there, or move the region");
     }
     const double top = region.upper.back() - 0.5 * filling.side.back();
     if (scene.stress == Scene::Stress::geostatic && top > scene.surface + 1e-6 * scene.cell.back()) {
       throw InputError(path + ": points of " + region_name(scene, region) +
-                       " lie above initial.surface_m = " + text_of(scene.surface) +
+                       " lie above initial.surface_m = " + in_words(scene.surface) +
                        ", and would start under tension; set it to the height of the free surface");
     }
   }
@@ -226,7 +222,7 @@ void check_watched(const Scene& scene, const std::string& path) {
       return within;
     });
     if (near) continue;
-    throw InputError(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + text_of(scene.watched[k]) +
+    throw InputError(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + in_words(scene.watched[k]) +
                      ", more than a cell from any material point; move it into a region, or take it away");
   }
 }
@@ -258,8 +254,8 @@ void expect_memory(const Scene& scene) {
   const double needed = memory_of(scene, points, nodes_of(scene));
   const double there = 1e-9 * double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   if (needed <= there) return;
-  throw InputError(text_of(points) + " material points and the nodes around them need " + text_of(needed) +
-                   " GB, and this machine has " + text_of(there) +
+  throw InputError(in_words(points) + " material points and the nodes around them need " + in_words(needed) +
+                   " GB, and this machine has " + in_words(there) +
                    " GB; make grid.cell_m larger, or a [[region]] or its points_per_cell smaller");
 }
 
@@ -341,9 +337,9 @@ void check_shaking(const Scene& scene, const std::string& material, double modul
   const double pressure = density * largest * (highest - lowest);
   if (!(speed > fastest && pressure > largest_strain * modulus)) return;
   throw InputError(std::string("loads.shaking.") + (record.times.empty() ? "velocity_m_s" : "record") +
-                   ": it moves the box at up to " + text_of(speed) + " m/s, and waves in material " + material +
-                   " at " + text_of(fastest / largest_strain) +
-                   " m/s: soil would be compressed by half or more at once; allowed: up to " + text_of(fastest) +
+                   ": it moves the box at up to " + in_words(speed) + " m/s, and waves in material " + material +
+                   " at " + in_words(fastest / largest_strain) +
+                   " m/s: soil would be compressed by half or more at once; allowed: up to " + in_words(fastest) +
                    " m/s; make it slower, or the material stiffer");
 }
 
@@ -352,18 +348,18 @@ void check_shaking(const Scene& scene, const std::string& material, double modul
 void check_loads(const Scene& scene, const std::string& material, double modulus, double density) {
   const auto refuse_pressure = [&](const std::string& key, const std::string& value, double pressure) {
     if (!(std::abs(pressure) > largest_strain * modulus)) return;
-    throw InputError(key + " = " + value + ": a pressure of " + text_of(std::abs(pressure)) +
-                     " Pa would compress material " + material + ", of the modulus " + text_of(modulus) +
-                     " Pa, by half of its height or more; allowed: up to " + text_of(largest_strain * modulus) +
+    throw InputError(key + " = " + value + ": a pressure of " + in_words(std::abs(pressure)) +
+                     " Pa would compress material " + material + ", of the modulus " + in_words(modulus) +
+                     " Pa, by half of its height or more; allowed: up to " + in_words(largest_strain * modulus) +
                      " Pa; make the load smaller, or the material stiffer");
   };
-  refuse_pressure("loads.surface_pressure_Pa", text_of(scene.surface_pressure), scene.surface_pressure);
-  refuse_pressure("initial.pressure_Pa", text_of(scene.pressure), scene.pressure);
+  refuse_pressure("loads.surface_pressure_Pa", in_words(scene.surface_pressure), scene.surface_pressure);
+  refuse_pressure("initial.pressure_Pa", in_words(scene.pressure), scene.pressure);
   for (const auto& body : scene.bodies) {
     if (!body.plate) continue;
     const auto& values = body.plate->pressure.values;
     const double most = *std::max_element(values.begin(), values.end());
-    refuse_pressure("body." + body.name + ".pressure_Pa", text_of(most), most);
+    refuse_pressure("body." + body.name + ".pressure_Pa", in_words(most), most);
   }
   const auto moving = all_moving(scene);
   for (std::size_t i = 0; i < scene.cell.size(); ++i) {
@@ -374,11 +370,11 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
     }
     // Soil that nothing holds falls without being pressed.
     if (scene.planes.empty() && scene.bodies.empty()) break;
-    refuse_pressure("loads.gravity_m_s2", text_of(scene.gravity), density * scene.gravity[i] * (highest - lowest));
+    refuse_pressure("loads.gravity_m_s2", in_words(scene.gravity), density * scene.gravity[i] * (highest - lowest));
   }
   for (const auto& strip : scene.loads.strips) {
-    refuse_pressure("loads.strip.half_sine_Pa", text_of(strip.peak), strip.peak);
-    for (const double each : strip.history.values) refuse_pressure("loads.strip.history", text_of(each), each);
+    refuse_pressure("loads.strip.half_sine_Pa", in_words(strip.peak), strip.peak);
+    for (const double each : strip.history.values) refuse_pressure("loads.strip.history", in_words(each), each);
   }
   const double fastest = largest_strain * std::sqrt(modulus / density);
   check_shaking(scene, material, modulus, density, fastest);
@@ -387,10 +383,10 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
       // Two bodies press what is between them from both sides.
       const double speed = relative_speed(moving[a], moving[b]) / (moving[a].soil || moving[b].soil ? 1 : 2);
       if (!(speed > fastest)) continue;
-      throw InputError(moving[b].key + ": against " + moving[a].key + " it moves at up to " + text_of(speed) +
-                       " m/s, and waves in material " + material + " at " + text_of(2 * fastest) +
+      throw InputError(moving[b].key + ": against " + moving[a].key + " it moves at up to " + in_words(speed) +
+                       " m/s, and waves in material " + material + " at " + in_words(2 * fastest) +
                        " m/s: what they meet would be compressed by half or more at once; allowed: up to " +
-                       text_of(fastest) + " m/s; make it slower, or the material stiffer");
+                       in_words(fastest) + " m/s; make it slower, or the material stiffer");
     }
   }
 }

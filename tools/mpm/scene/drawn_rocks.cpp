@@ -101,7 +101,7 @@ std::vector<double> diameters_of(const RockField& field, Draw& draw) {
     const double one = D == 2 ? std::numbers::pi / 4 * row[0] * row[0] : std::numbers::pi / 6 * std::pow(row[0], 3);
     const double count = std::round(box * row[1] / parts / one);
     if (count > double(most_rocks)) {
-      throw InputError("rocks." + field.name + ".diameters_m: " + text_of(count) + " rocks of " + text_of(row[0]) +
+      throw InputError("rocks." + field.name + ".diameters_m: " + in_words(count) + " rocks of " + in_words(row[0]) +
                        " m would be drawn; allowed: up to " + std::to_string(most_rocks) +
                        "; take larger ones, or a smaller volume_share");
     }
@@ -155,7 +155,7 @@ void draw_in(const RockField& field, std::vector<RockOfScene>& all) {
       const auto axis = std::size_t(i);
       drawn.centre[i] = field.lower[axis] + draw() * (field.upper[axis] - field.lower[axis]);
       if (field.upper[axis] - field.lower[axis] >= 2 * extent(drawn)[i]) continue;
-      throw InputError("rocks." + field.name + ".diameters_m: a rock of " + text_of(diameter) +
+      throw InputError("rocks." + field.name + ".diameters_m: a rock of " + in_words(diameter) +
                        " m does not fit between lower_m and upper_m along " + axis_names[i] +
                        "; make it smaller, or the box larger");
     }
@@ -164,15 +164,15 @@ void draw_in(const RockField& field, std::vector<RockOfScene>& all) {
     all.push_back(rock);
   }
   if (all.size() == first) {
-    throw InputError("rocks." + field.name + ".volume_share = " + text_of(field.share) +
+    throw InputError("rocks." + field.name + ".volume_share = " + in_words(field.share) +
                      " is less than one rock in the box; make it larger, or diameters_m smaller");
   }
   double least = -1;
   for (int sweep = 0; sweep < most_sweeps && least < field.gap; ++sweep) least = push_apart<D>(field, rocks);
   if (least < field.gap) {
-    throw InputError("rocks." + field.name + ".volume_share = " + text_of(field.share) + ": after " +
-                     std::to_string(most_sweeps) + " sweeps two rocks are still " + text_of(least) +
-                     " m apart (asked: " + text_of(field.gap) +
+    throw InputError("rocks." + field.name + ".volume_share = " + in_words(field.share) + ": after " +
+                     std::to_string(most_sweeps) + " sweeps two rocks are still " + in_words(least) +
+                     " m apart (asked: " + in_words(field.gap) +
                      "); make volume_share or gap_m smaller, or the grading wider");
   }
   for (std::size_t k = first; k < all.size(); ++k) {

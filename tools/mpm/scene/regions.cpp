@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/mpm/keys/included.hpp"
 #include "tools/mpm/scene/water.hpp"
 
 namespace mpm {
@@ -37,8 +36,8 @@ void read_grains(Keys& keys, std::size_t d, RegionOfScene& region) {
   const double half = 0.5 * region.largest_side();
   for (const auto& grain : region.grains) {
     if (!(grain[d] >= range_of("radius_m").least))
-      keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive, " +
-                               text_of(range_of("radius_m").least) + " m or more");
+      keys.wrong("rows_m", "has a grain of radius " + in_words(grain[d]) + "; radii must be positive, " +
+                               in_words(range_of("radius_m").least) + " m or more");
     for (std::size_t i = 0; i < d; ++i) {
       region.lower[i] = std::min(region.lower[i], grain[i] - half);
       region.upper[i] = std::max(region.upper[i], grain[i] + half);
@@ -79,10 +78,6 @@ RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOf
     if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
   }
   return region;
-}
-
-void include_grains(toml::table& file, const std::string& scene_path) {
-  include_rows(file, "region", "table", "rows_m", scene_path);
 }
 
 }  // namespace mpm

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rvelab/grains/mesh.hpp"
+#include "rvelab/keys/regular_file.hpp"
 #include "tools/mpm/keys/included.hpp"
 #include "tools/mpm/scene/scene.hpp"
 
@@ -20,9 +22,8 @@ std::size_t number_of(Keys& keys, const RocksOfScene& rocks) {
     known.insert(rocks.materials[k].name);
   }
   if (keys.has("material")) {
-    keys.wrong("material", known.empty() ? "is \"" + name + "\", and there is no [[rock_material]]; add it"
-                                         : "is \"" + name + "\"; the nearest rock_material is \"" +
-                                               nearest_word(name, known) + "\"");
+    keys.wrong("material", "is \"" + name + "\"" +
+                               (known.empty() ? ", and there is no [[rock_material]]; add it" : one_of(known, name)));
   }
   return 0;
 }
@@ -44,7 +45,7 @@ std::vector<double> blockiness_of(Keys& keys, int d) {
   auto values = keys.numbers("blockiness", d == 2 ? 1 : 2);
   for (const double each : values) {
     if (each < 2 || each > 50)
-      keys.wrong("blockiness", "holds " + text_of(each) + "; allowed: 2 (round) to 50 (a box)");
+      keys.wrong("blockiness", "holds " + in_words(each) + "; allowed: 2 (round) to 50 (a box)");
   }
   values.resize(2, values[0]);
   return values;
@@ -132,8 +133,8 @@ void read_rows(Keys& keys, int d, const RockOfScene& like, std::vector<RockOfSce
     }
     const double least = round ? rock.radius : *std::min_element(rock.half_axes.begin(), rock.half_axes.end());
     if (!(least >= range_of("radius_m").least))
-      keys.wrong("rows_m", "has a rock of size " + text_of(least) + "; sizes must be positive, " +
-                               text_of(range_of("radius_m").least) + " m or more");
+      keys.wrong("rows_m", "has a rock of size " + in_words(least) + "; sizes must be positive, " +
+                               in_words(range_of("radius_m").least) + " m or more");
     if (d == 3 && !(Eigen::Map<const Vec<4>>(rock.rotation.data()).norm() > 0)) {
       keys.wrong("rows_m", "has a quaternion of length 0; give [1, 0, 0, 0] for a rock that is not turned");
     }
@@ -177,14 +178,14 @@ void read_group(Keys& keys, RocksOfScene& rocks, int d) {
   if (field.diameters.empty()) keys.wrong("diameters_m", "is missing; give rows [diameter in m, part by volume]");
   for (const auto& row : field.diameters) {
     if (!(row[0] >= range_of("_m").least && row[1] >= range_of("").least))
-      keys.wrong("diameters_m", "has the row " + text_of(row) + ", which is not positive; give [diameter, part], " +
-                                    text_of(range_of("_m").least) + " m or more");
+      keys.wrong("diameters_m", "has the row " + in_words(row) + ", which is not positive; give [diameter, part], " +
+                                    in_words(range_of("_m").least) + " m or more");
   }
-  if (field.share > 0.6) keys.wrong("volume_share", "is " + text_of(field.share) + "; allowed: up to 0.6");
+  if (field.share > 0.6) keys.wrong("volume_share", "is " + in_words(field.share) + "; allowed: up to 0.6");
   for (std::size_t i = 0; i < axes; ++i) {
     if (!(field.lower[i] < field.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
     if (!(field.aspect[i] >= 1e-3 && field.aspect[i] <= 1e3))
-      keys.wrong("aspect", "holds " + text_of(field.aspect[i]) + "; allowed: 0.001 to 1000 along every axis");
+      keys.wrong("aspect", "holds " + in_words(field.aspect[i]) + "; allowed: 0.001 to 1000 along every axis");
   }
   draw_rocks(field, rocks.all);
 }
@@ -215,12 +216,13 @@ RockSoil read_rock_soil(Keys keys) {
 
 void include_rocks(toml::table& file, const std::string& scene_path) {
   include_rows(file, "rocks", "table", "rows_m", scene_path);
-  include_files(file, "rock", "file_stl", scene_path, [](toml::table& table, const std::filesystem::path& path) {
+  include_files(file, "rock", "file_stl", scene_path, [](toml::table& table, const std::string& path) {
+    const auto mesh = rvelab::read_stl(rvelab::keys::whole_file<std::string>(path, "an STL file"), path);
     toml::array rows;
-    for (const auto& triangle : read_stl(path.string())) {
+    for (const auto& triangle : mesh.triangles) {
       toml::array row;
-      for (const auto& corner : triangle) {
-        for (const double x : corner) row.push_back(x);
+      for (const int corner : triangle) {
+        for (const double x : mesh.corners[std::size_t(corner)]) row.push_back(x);
       }
       rows.push_back(std::move(row));
     }

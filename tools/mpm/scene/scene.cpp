@@ -1,7 +1,9 @@
 #include "tools/mpm/scene/scene.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "tools/mpm/keys/included.hpp"
 #include "tools/mpm/scene/checks.hpp"
 #include "tools/mpm/scene/plates.hpp"
 #include "tools/mpm/scene/regions.hpp"
@@ -185,11 +187,37 @@ void read_rest(Keys& file, Scene& scene) {
   output.finish();
 }
 
+toml::table parse_scene(const std::string& path) {
+  const std::filesystem::path file(path);
+  if (std::error_code none; std::filesystem::exists(file, none)) return rvelab::keys::parse_toml_file(path);
+  throw InputError(path + ": there is no such file; a scene goes by its path, such as protocols/mpm/" +
+                   (file.extension().empty() && !file.stem().empty() ? file.stem().string() : "column_soil") + ".toml");
+}
+
+/// Tables key by key, arrays of tables element by element, everything else as a whole.
+void override_table(toml::table& base, const toml::table& over) {
+  for (const auto& [key, node] : over) {
+    auto* mine = base.get(key.str());
+    if (mine != nullptr && mine->is_table() && node.is_table()) {
+      override_table(*mine->as_table(), *node.as_table());
+    } else if (mine != nullptr && mine->is_array_of_tables() && node.is_array_of_tables()) {
+      auto& list = *mine->as_array();
+      const auto& other = *node.as_array();
+      for (std::size_t k = 0; k < other.size(); ++k) {
+        if (k >= list.size()) list.push_back(toml::table());
+        override_table(*list[k].as_table(), *other[k].as_table());
+      }
+    } else {
+      base.insert_or_assign(key.str(), node);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> cases_of(const std::string& path) {
   std::vector<std::string> names;
-  const auto file = parse_file(path);
+  const auto file = parse_scene(path);
   if (const auto* cases = file["case"].as_table()) {
     for (const auto& [key, node] : *cases) names.emplace_back(key.str());
   }
@@ -198,20 +226,18 @@ std::vector<std::string> cases_of(const std::string& path) {
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
                  const std::vector<std::string>& assignments, toml::table* resolved) {
-  toml::table file = parse_file(path);
+  toml::table file = parse_scene(path);
   for (const auto& name : cases) {
     const auto* over = file["case"][name].as_table();
-    if (over == nullptr) {
-      const auto known = cases_of(path);
-      throw InputError(path + ": there is no case " + name + "; the nearest is " +
-                       nearest_word(name, {known.begin(), known.end()}));
-    }
+    if (over == nullptr) throw InputError(path + ": there is no case " + name + one_of(cases_of(path), name));
     const toml::table copy = *over;
     override_table(file, copy);
   }
-  for (const auto& assignment : assignments) assign(file, assignment);
-  include_record(file, path);
-  include_grains(file, path);
+  std::vector<rvelab::keys::KeyError> errors;
+  rvelab::keys::assign_all(file, assignments, errors, 1);
+  rvelab::keys::raise(path, errors);
+  include_rows(file, "loads.shaking", "record_csv", "record", path);
+  include_rows(file, "region", "table", "rows_m", path);
   include_rocks(file, path);
   include_terrain(file, path);
   Keys keys(file, path, "");

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <sstream>
 
-#include "tools/mpm/keys/included.hpp"
 #include "tools/mpm/scene/checks.hpp"
 
 namespace mpm {
@@ -20,8 +16,8 @@ TimeHistory read_time_history(Keys& keys, const std::string& name, const std::st
   TimeHistory history;
   for (const auto& row : keys.rows(name, 2, {"_s", unit})) {
     if (!history.times.empty() && row[0] <= history.times.back()) {
-      keys.wrong(name, "must go forward in time, and goes from " + text_of(history.times.back()) + " to " +
-                           text_of(row[0]) + " s; sort its rows, and leave out what is there twice");
+      keys.wrong(name, "must go forward in time, and goes from " + in_words(history.times.back()) + " to " +
+                           in_words(row[0]) + " s; sort its rows, and leave out what is there twice");
     }
     history.times.push_back(row[0]);
     history.values.push_back(row[1]);
@@ -37,6 +33,7 @@ Shaking read_shaking(Keys keys, int dimension) {
   const auto axis = keys.choice("axis", axes);
   shaking.axis = int(std::find(axes.begin(), axes.end(), axis) - axes.begin());
   shaking.record = read_time_history(keys, "record", "_m_s2");
+  if (keys.has("record_csv")) keys.text("record_csv");  // a text would have become rows
   if (shaking.record.times.empty()) {
     shaking.velocity = keys.number("velocity_m_s");
     shaking.frequency = keys.positive("frequency_Hz");
@@ -136,39 +133,6 @@ Loads read_loads(Keys& keys, const Scene& scene) {
   return loads;
 }
 
-void include_record(toml::table& file, const std::string& scene_path) {
-  auto* shaking = file["loads"]["shaking"].as_table();
-  if (shaking == nullptr || !shaking->contains("record_csv")) return;
-  const auto name = (*shaking)["record_csv"].value<std::string>();
-  if (!name) throw InputError(scene_path + ": loads.shaking.record_csv must be a text in quotation marks");
-  const auto path = std::filesystem::path(scene_path).parent_path() / *name;
-  std::istringstream csv(text_of_file(path, "loads.shaking.record_csv", "rows s,m/s^2"));
-  toml::array rows;
-  std::string line;
-  for (long number = 1; std::getline(csv, line); ++number) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream words(line);
-    double time = 0, acceleration = 0;
-    std::string rest;
-    if (words >> time >> acceleration && !(words >> rest)) {
-      rows.push_back(toml::array{time, acceleration});
-      continue;
-    }
-    std::istringstream again(line);
-    std::string first;
-    const bool none = !(again >> first);
-    char* end = nullptr;
-    std::strtod(first.c_str(), &end);
-    if (none || (rows.empty() && *end != 0)) continue;  // empty, or a header
-    throw InputError(path.string() + ":" + std::to_string(number) +
-                     ": is no row of a time in s and an acceleration in m/s^2; correct or remove it");
-  }
-  if (rows.empty())
-    throw InputError(path.string() + ": holds no rows of s,m/s^2; give another loads.shaking.record_csv");
-  shaking->erase("record_csv");
-  shaking->insert_or_assign("record", rows);
-}
-
 void check_water(const Scene& scene, const std::string& path) {
   if (!scene.water) return;
   const auto& water = *scene.water;
@@ -192,16 +156,16 @@ void check_water(const Scene& scene, const std::string& path) {
                        std::to_string(least) + " saturated points for ever; set it to that at least");
     }
     if (region.upper.back() > water.table + 1e-6 * scene.cell.back()) {
-      throw InputError(name + ": reaches " + text_of(region.upper.back()) +
-                       " m, above fluid.water_table_m = " + text_of(water.table) +
+      throw InputError(name + ": reaches " + in_words(region.upper.back()) +
+                       " m, above fluid.water_table_m = " + in_words(water.table) +
                        ", and would start under suction; end it there, and set saturated = false above");
     }
   }
   if (!any) throw InputError(path + ": [fluid] is there, and no region is saturated; set saturated = true in one");
   if (!std::isnan(water.table) && scene.stress == Scene::Stress::geostatic &&
       water.table > scene.surface + 1e-6 * scene.cell.back()) {
-    throw InputError(path + ": fluid.water_table_m = " + text_of(water.table) + " lies above initial.surface_m = " +
-                     text_of(scene.surface) + ": free water is no part of the method; set it to the surface at most");
+    throw InputError(path + ": fluid.water_table_m = " + in_words(water.table) + " lies above initial.surface_m = " +
+                     in_words(scene.surface) + ": free water is no part of the method; set it to the surface at most");
   }
 }
 

@@ -15,8 +15,6 @@ void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, Reg
 TimeHistory read_time_history(Keys& keys, const std::string& name, const std::string& unit);
 /// loads.shaking and loads.strip.
 Loads read_loads(Keys& keys, const Scene& scene);
-/// Replaces loads.shaking.record_csv, a file beside the scene, by the rows that it holds.
-void include_record(toml::table& file, const std::string& scene_path);
 /// What the water of a scene must be as a whole.
 void check_water(const Scene& scene, const std::string& path);
 

@@ -36,7 +36,7 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
     const double depth = -body.distance(point.position - body.centre, outward, point.half);
     if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
     const std::vector<double> position(point.position.data(), point.position.data() + D);
-    throw InputError(region_name(scene, region) + ": its point at " + text_of(position) + " m would lie inside body." +
+    throw InputError(region_name(scene, region) + ": its point at " + in_words(position) + " m would lie inside body." +
                      body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
                      ", which then holds what is inside");
   }

@@ -20,9 +20,9 @@ void expect_size(const std::string& name, const RockShape<D>& shape) {
   const double across = 2 * std::min(shape.inner_radius(), shape.equivalent_radius());
   const auto range = range_of("size_m");
   if (across >= range.least && shape.bounding_radius() <= range.most) return;
-  throw InputError(name + ": is " + text_of(across) + " m across at its thinnest, and reaches " +
-                   text_of(shape.bounding_radius()) + " m from its centre; allowed: " + text_of(range.least) + " to " +
-                   text_of(range.most) + " m; give its sizes (radius_m, half_axes_m, file_stl) in m");
+  throw InputError(name + ": is " + in_words(across) + " m across at its thinnest, and reaches " +
+                   in_words(shape.bounding_radius()) + " m from its centre; allowed: " + in_words(range.least) +
+                   " to " + in_words(range.most) + " m; give its sizes (radius_m, half_axes_m, file_stl) in m");
 }
 
 template <int D>
@@ -80,16 +80,16 @@ void check_places(const Scene& scene, const Solver<D>& solver) {
     const double radius = rocks.shapes[k].bounding_radius(), cells = radius / solver.grid.cell.minCoeff();
     const double points = D == 2 ? 2 * std::numbers::pi * cells : 4 * std::numbers::pi * cells * cells;
     if (points <= most_points) continue;
-    throw InputError(name_of(all[k], k) + ": reaches " + text_of(radius) + " m from its centre, and would have " +
-                     text_of(points) + " points of its surface, a cell apart; allowed: up to " + text_of(most_points) +
-                     "; make the rock smaller, or grid.cell_m larger");
+    throw InputError(name_of(all[k], k) + ": reaches " + in_words(radius) + " m from its centre, and would have " +
+                     in_words(points) + " points of its surface, a cell apart; allowed: up to " +
+                     in_words(most_points) + "; make the rock smaller, or grid.cell_m larger");
   }
   rocks.find_candidates(walls, Vec<D>::Zero(), 0);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double across = 2 * rocks.shapes[k].inner_radius();
     if (across >= 2.5 * size) continue;
-    throw InputError(name_of(all[k], k) + ": is " + text_of(across) + " m across, and the soil's points " +
-                     text_of(size) +
+    throw InputError(name_of(all[k], k) + ": is " + in_words(across) + " m across, and the soil's points " +
+                     in_words(size) +
                      " m: soil cannot part before it; allowed: two and a half points or more; make it larger, or "
                      "grid.cell_m smaller");
   }
@@ -105,7 +105,7 @@ void check_places(const Scene& scene, const Solver<D>& solver) {
                               : number < solver.planes.all.size()
                                   ? "boundary." + solver.planes.all[number].name
                                   : "body." + solver.bodies.all[number - solver.planes.all.size()].name;
-    throw InputError(name_of(all[std::size_t(pair.first)], std::size_t(pair.first)) + ": stands " + text_of(-gap) +
+    throw InputError(name_of(all[std::size_t(pair.first)], std::size_t(pair.first)) + ": stands " + in_words(-gap) +
                      " m in " + other + " at the start; move one of them");
   }
 }
@@ -200,9 +200,9 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
   widen_balls<D>(rocks, solver.points);
   double volume = 0;
   for (const auto& rock : rocks.all) volume += rocks.shapes[std::size_t(rock.shape)].volume() * rocks.thickness;
-  told.push_back(std::to_string(rocks.all.size()) + " rocks of " + text_of(volume) + " m3; " +
+  told.push_back(std::to_string(rocks.all.size()) + " rocks of " + in_words(volume) + " m3; " +
                  std::to_string(rocks.left_out) + " points left out where they stand, " +
-                 text_of(rocks.left_out_volume) + " m3 of soil in all");
+                 in_words(rocks.left_out_volume) + " m3 of soil in all");
   const double size = point_size<D>(scene), cell = solver.grid.cell.minCoeff();
   const auto small = std::count_if(rocks.all.begin(), rocks.all.end(), [&](const auto& rock) {
     return 2 * rocks.shapes[std::size_t(rock.shape)].inner_radius() < 5 * size;

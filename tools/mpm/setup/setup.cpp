@@ -79,8 +79,8 @@ void expect_countable_surface(const std::string& name, const BodyShape<D>& shape
     points = 6.3 * disc->radius / cell.minCoeff();
   }
   if (points <= most) return;
-  throw InputError("body." + name + "." + key + ": the surface would have " + text_of(points) +
-                   " points of contact, a cell apart; allowed: up to " + text_of(most) +
+  throw InputError("body." + name + "." + key + ": the surface would have " + in_words(points) +
+                   " points of contact, a cell apart; allowed: up to " + in_words(most) +
                    "; make the body smaller or grid.cell_m larger, or take a half_space");
 }
 
@@ -302,7 +302,7 @@ void tell_of_ground(const Scene& scene, const RegionOfScene& region, std::size_t
   const double whole = double(filling.total) * vector_of<D>(filling.side).prod() * (D == 2 ? scene.thickness : 1);
   double volume = 0;
   for (std::size_t k = first; k < solver.points.size(); ++k) volume += solver.points[k].volume;
-  model.told.push_back(region_name(scene, region) + ": " + text_of(volume) + " of its " + text_of(whole) +
+  model.told.push_back(region_name(scene, region) + ": " + in_words(volume) + " of its " + in_words(whole) +
                        " m3 are soil; the others lie in terrain or rocks");
 }
 

@@ -13,76 +13,16 @@ constexpr const char* mesh_remedy = "; repair the mesh, or take its convex hull"
 
 Vec<3> area_of(const Triangle& t) { return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]); }
 
-/// Corners that lie together within 1e-7 of the size are one; triangles that vanish are left out.
-Polyhedron welded(const std::vector<Triangle>& triangles) {
-  Polyhedron form;
-  for (const Triangle& triangle : triangles) {
-    for (const Vec<3>& corner : triangle) {
-      if (!corner.allFinite() || corner.cwiseAbs().maxCoeff() > 1e100)
-        throw InputError(std::string("a corner of the surface is not a finite number") + mesh_remedy);
-      form.corners.push_back(corner);
-    }
-  }
-  const double near = 1e-7 * form.size();
-  form.corners.clear();
-  for (const Triangle& triangle : triangles) {
-    std::array<int, 3> numbers;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto same = [&](const Vec<3>& other) { return (other - triangle[k]).cwiseAbs().maxCoeff() <= near; };
-      const auto found = std::find_if(form.corners.begin(), form.corners.end(), same);
-      numbers[k] = int(found - form.corners.begin());
-      if (found == form.corners.end()) form.corners.push_back(triangle[k]);
-    }
-    if (numbers[0] != numbers[1] && numbers[1] != numbers[2] && numbers[2] != numbers[0])
-      form.triangles.push_back(numbers);
-  }
-  if (form.triangles.size() < 4) {
-    throw InputError("the surface has " + std::to_string(form.triangles.size()) +
-                     " triangles that are not points or lines; a body has at least 4");
-  }
-  return form;
-}
-
 /// The triangle on the left of each directed side.
 using Sides = std::map<std::pair<int, int>, int>;
 
-Sides closed_sides(const Polyhedron& form) {
+Sides sides_of(const Polyhedron& form) {
   Sides sides;
   for (std::size_t t = 0; t < form.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::pair<int, int> side(form.triangles[t][k], form.triangles[t][(k + 1) % 3]);
-      if (!sides.emplace(side, int(t)).second)
-        throw InputError(std::string("two triangles have one side in the same direction: one of them faces the other "
-                                     "way, or is there twice") +
-                         mesh_remedy);
-    }
-  }
-  for (const auto& [side, triangle] : sides) {
-    if (sides.count({side.second, side.first})) continue;
-    const Vec<3> middle = 0.5 * (form.corner(side.first) + form.corner(side.second));
-    throw InputError("the surface is open at " + text_of(std::vector<double>(middle.data(), middle.data() + 3)) +
-                     ", where a triangle has no neighbour" + mesh_remedy);
+    for (std::size_t k = 0; k < 3; ++k) sides[{form.triangles[t][k], form.triangles[t][(k + 1) % 3]}] = int(t);
   }
   return sides;
 }
-
-/// Volume; first and second moments about the origin, which should lie near.
-struct Moments {
-  double volume = 0;
-  Vec<3> first = Vec<3>::Zero();
-  Mat<3> second = Mat<3>::Zero();
-  explicit Moments(const Polyhedron& form) {
-    for (std::size_t k = 0; k < form.triangles.size(); ++k) {  // tetrahedra between the origin and each triangle
-      const Triangle t = form.triangle(int(k));
-      const double part = t[0].dot(t[1].cross(t[2])) / 6;
-      const Vec<3> sum = t[0] + t[1] + t[2];
-      volume += part;
-      first += part / 4 * sum;
-      second += part / 20 * (sum * sum.transpose());
-      for (const Vec<3>& corner : t) second += part / 20 * (corner * corner.transpose());
-    }
-  }
-};
 
 /// Triangles whose normals differ by less than 1e-5 are one face.
 void find_faces(Polyhedron& form, const Sides& sides) {
@@ -124,7 +64,7 @@ void check_convex(Polyhedron& form) {
     for (const int t : face.triangles) {
       for (const Vec<3>& corner : form.triangle(t)) {
         if (face.normal.dot(corner) >= face.height - flatness * size) continue;
-        throw InputError("the surface is not convex: a corner lies " + text_of(face.height - face.normal.dot(corner)) +
+        throw InputError("the surface is not convex: a corner lies " + in_words(face.height - face.normal.dot(corner)) +
                          " m in front of a face, at most 1e-6 of the size is allowed; take its convex hull, or cut it "
                          "into convex pieces");
       }
@@ -133,14 +73,14 @@ void check_convex(Polyhedron& form) {
 }
 
 /// The columns are the principal axes, as near to the axes of the triangles as they can be.
-Mat<3> principal_axes(Mat<3> second) {
-  const double noise = 1e-12 * second.trace();
+Mat<3> principal_axes(Mat<3> inertia) {
+  const double noise = 1e-12 * inertia.trace();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      if (i != j && std::abs(second(i, j)) < noise) second(i, j) = 0;
+      if (i != j && std::abs(inertia(i, j)) < noise) inertia(i, j) = 0;
     }
   }
-  const Mat<3> found = Eigen::SelfAdjointEigenSolver<Mat<3>>(second).eigenvectors();
+  const Mat<3> found = Eigen::SelfAdjointEigenSolver<Mat<3>>(inertia).eigenvectors();
   Mat<3> best = Mat<3>::Identity();
   double nearest = -1e300;
   int order[3] = {0, 1, 2};
@@ -162,33 +102,26 @@ Mat<3> principal_axes(Mat<3> second) {
 }  // namespace
 
 Solid solid_of(const std::vector<Triangle>& triangles) {
-  Solid solid{welded(triangles), 0, Vec<3>::Zero(), Vec<3>::Zero(), Eigen::Quaterniond::Identity()};
+  Solid solid;
   Polyhedron& form = solid.form;
+  static_cast<rvelab::Mesh&>(form) = rvelab::mesh_of(triangles, "its surface");
+  Vec<3> middle = Vec<3>::Zero();
+  for (const Vec<3>& corner : form.corners) middle += corner / double(form.corners.size());
+  const auto body = rvelab::properties_of(form, middle);
   const double size = form.size();
-  closed_sides(form);
-  for (const Vec<3>& corner : form.corners) solid.centre += corner / double(form.corners.size());
-  for (Vec<3>& corner : form.corners) corner -= solid.centre;
-  if (Moments(form).volume < 0) {
-    for (auto& triangle : form.triangles) std::swap(triangle[1], triangle[2]);
-  }
-  if (!(Moments(form).volume > 1e-9 * size * size * size))
-    throw InputError(std::string("the surface encloses no volume") + mesh_remedy);
+  if (!(body.volume > 1e-9 * size * size * size))
+    throw InputError(std::string("its surface holds no volume") + mesh_remedy);
   for (std::size_t k = 0; k < form.triangles.size(); ++k) {
     if (area_of(form.triangle(int(k))).norm() > 1e-9 * size * size) continue;
     throw InputError(std::string("a triangle of the surface has no area, its corners lie on a line") + mesh_remedy);
   }
-  const Moments rough(form);
-  const Vec<3> shift = rough.first / rough.volume;
-  solid.centre += shift;
-  for (Vec<3>& corner : form.corners) corner -= shift;
-  const Moments about(form);
-  const Mat<3> axes = principal_axes(about.second);
-  for (Vec<3>& corner : form.corners) corner = (axes.transpose() * corner).eval();
-  const Vec<3> squares = (axes.transpose() * about.second * axes).diagonal();
-  solid.volume = about.volume;
-  solid.inertia = Vec<3>::Constant(squares.sum()) - squares;
+  const Mat<3> axes = principal_axes(body.inertia);
+  for (Vec<3>& corner : form.corners) corner = (axes.transpose() * (corner - body.centre)).eval();
+  solid.volume = body.volume;
+  solid.inertia = (axes.transpose() * body.inertia * axes).diagonal();
+  solid.centre = body.centre;
   solid.orientation = Eigen::Quaterniond(axes).normalized();
-  find_faces(form, closed_sides(form));
+  find_faces(form, sides_of(form));
   check_convex(form);
   return solid;
 }

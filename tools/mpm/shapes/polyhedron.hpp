@@ -1,14 +1,13 @@
 // Convex polyhedra: corners, flat faces of one or more triangles, and edges between faces that are not in one plane.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "tools/mpm/shapes/shape.hpp"
 
 namespace mpm {
 
-struct Polyhedron {
+struct Polyhedron : rvelab::Mesh {
   struct Face {
     Vec<3> normal;  ///< unit, outward
     double height;  ///< normal . x of its points, m
@@ -17,8 +16,6 @@ struct Polyhedron {
   struct Edge {
     int corners[2], faces[2];
   };
-  std::vector<Vec<3>> corners;
-  std::vector<std::array<int, 3>> triangles;  ///< anticlockwise from outside
   std::vector<Face> faces;
   std::vector<Edge> edges;
 
@@ -36,7 +33,7 @@ struct Polyhedron {
 /// A polyhedron in its principal axes, and where they lie in the frame of its triangles.
 struct Solid {
   Polyhedron form;
-  double volume;
+  double volume = 0;
   Vec<3> inertia, centre;
   Eigen::Quaterniond orientation;
 };

@@ -11,12 +11,12 @@ namespace {
 
 void check_positive(double value, const char* what) {
   if (value > 0 && value < 1e300) return;
-  throw InputError(std::string("a rock's ") + what + " is " + text_of(value) + " m; it must be positive");
+  throw InputError(std::string("a rock's ") + what + " is " + in_words(value) + " m; it must be positive");
 }
 
 void check_exponent(double n) {
   if (n >= 2 && n <= 50) return;
-  throw InputError("a superquadric's blockiness is " + text_of(n) + "; it must lie between 2 (an ellipsoid) and 50");
+  throw InputError("a superquadric's blockiness is " + in_words(n) + "; it must lie between 2 (an ellipsoid) and 50");
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <functional>
 #include <memory>
 #include <type_traits>
 #include <variant>
 
+#include "rvelab/grains/mesh.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -27,7 +27,7 @@ using Spin = std::conditional_t<D == 2, Eigen::Matrix<double, 1, 1>, Vec<D>>;
 /// The orientation of a body: rad, anticlockwise, in the plane; from its frame into the world's in space.
 template <int D>
 using Rot = std::conditional_t<D == 2, double, Eigen::Quaterniond>;
-using Triangle = std::array<Vec<3>, 3>;
+using rvelab::Triangle;
 
 template <int D>
 struct Superquadric;  // superquadric.hpp
@@ -114,9 +114,5 @@ struct Gap {
 /// the product of their edges where they are apart.
 template <int D>
 Gap<D> gap_between(const Placed<D>& a, const Placed<D>& b);
-
-/// The triangles of an STL file, ASCII or binary, their own normals are not read. InputError names the file, what is
-/// wrong and what to do.
-std::vector<Triangle> read_stl(const std::string& path);
 
 }  // namespace mpm

@@ -12,7 +12,7 @@ namespace {
 
 template <int D>
 std::string place_of(const Point<D>& point) {
-  return text_of(std::vector<double>(point.position.data(), point.position.data() + D)) + " m";
+  return in_words(std::vector<double>(point.position.data(), point.position.data() + D)) + " m";
 }
 
 /// The cause of the time step of Solver::stable_step: the fastest wave, the fastest point, or a driven boundary or
@@ -28,14 +28,14 @@ std::string cause_of_step(const Solver<D>& solver) {
       const double speed = std::sqrt(modulus / density), own = point.velocity.norm();
       if (!(speed <= wave)) {
         wave = speed;
-        of_wave = "the wave of material " + group.name + ", " + text_of(speed) + " m/s, at its point at " +
-                  place_of<D>(point) + " (modulus " + text_of(modulus) + " Pa, density " + text_of(density) +
+        of_wave = "the wave of material " + group.name + ", " + in_words(speed) + " m/s, at its point at " +
+                  place_of<D>(point) + " (modulus " + in_words(modulus) + " Pa, density " + in_words(density) +
                   " kg/m^3)";
       }
       if (!(own <= fastest)) {
         fastest = own;
         of_point = "the point of material " + group.name + " at " + place_of<D>(point) + ", which moves at " +
-                   text_of(own) + " m/s";
+                   in_words(own) + " m/s";
       }
     }
   }
@@ -43,7 +43,7 @@ std::string cause_of_step(const Solver<D>& solver) {
     const double speed = each.velocity_at(solver.time).norm();
     if (speed <= driven) return;
     driven = speed;
-    of_driven = name + ", which moves at " + text_of(speed) + " m/s";
+    of_driven = name + ", which moves at " + in_words(speed) + " m/s";
   };
   for (const auto& plane : solver.planes.all) drive("boundary." + plane.name, plane);
   for (const auto& body : solver.bodies.all) drive("body." + body.name, body);
@@ -52,15 +52,15 @@ std::string cause_of_step(const Solver<D>& solver) {
     if (speed <= driven) continue;
     driven = speed;
     of_driven = "rock " + std::to_string(k) + " (" + solver.rocks->all[k].name + "), whose surface moves at " +
-                text_of(speed) + " m/s";
+                in_words(speed) + " m/s";
   }
   if (solver.points.empty()) {
-    return (driven > 0 ? of_driven : "gravity of " + text_of(solver.options.gravity.norm()) + " m/s^2") +
-           ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
+    return (driven > 0 ? of_driven : "gravity of " + in_words(solver.options.gravity.norm()) + " m/s^2") +
+           ", in cells of " + in_words(solver.grid.cell.minCoeff()) + " m";
   }
   const double own = solver.options.cfl / (wave + fastest);
   if (driven > 0 && 0.2 / driven < own) return of_driven;
-  return (wave >= fastest ? of_wave : of_point) + ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
+  return (wave >= fastest ? of_wave : of_point) + ", in cells of " + in_words(solver.grid.cell.minCoeff()) + " m";
 }
 
 /// J, a scale for residuals: energy that the stress of the soil stores, at strains up to a hundredth; round-off of
@@ -90,8 +90,8 @@ template <int D>
 void watch_step(const Solver<D>& solver, double dt, Watched& seen, std::ostream& tell) {
   if (seen.first_step == 0) seen.first_step = dt;
   if (dt >= warning_step * seen.first_step) return;
-  const std::string words = "at " + text_of(solver.time) + " s the time step is " + text_of(dt) +
-                            " s, and the first was " + text_of(seen.first_step) + " s; ";
+  const std::string words = "at " + in_words(solver.time) + " s the time step is " + in_words(dt) +
+                            " s, and the first was " + in_words(seen.first_step) + " s; ";
   // A step that is not a number comes here too.
   if (!(dt >= ending_step * seen.first_step)) {
     throw std::runtime_error(words + "the run would stand still: it ends. What asks for it: " +
@@ -106,10 +106,10 @@ template <int D>
 void watch_length(const Solver<D>& solver, double dt, double sub_steps, double duration) {
   const double left = duration - solver.time, steps = left / dt * sub_steps;
   if (steps <= most_steps) return;
-  std::string words = "at " + text_of(solver.time) + " s the time step is " + text_of(dt / sub_steps) + " s" +
-                      (sub_steps > 1 ? " (of the contacts of rocks)" : "") + ", and the " + text_of(left) +
-                      " s to time.duration_s would need " + text_of(steps) + " steps; allowed: up to " +
-                      text_of(most_steps) + ". ";
+  std::string words = "at " + in_words(solver.time) + " s the time step is " + in_words(dt / sub_steps) + " s" +
+                      (sub_steps > 1 ? " (of the contacts of rocks)" : "") + ", and the " + in_words(left) +
+                      " s to time.duration_s would need " + in_words(steps) + " steps; allowed: up to " +
+                      in_words(most_steps) + ". ";
   words += sub_steps > 1 ? "What asks for it: the stiffest contact of rocks; make rocks larger or softer"
                          : "What asks for it: " + cause_of_step<D>(solver) + "; make material softer, or cells larger";
   words += ", or time.duration_s shorter";
@@ -144,7 +144,7 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
   // A share that is not a number comes here too.
   if (!(share < ending_share + start_up)) {
     throw std::runtime_error(
-        words.str() + " (allowed: " + text_of(100 * ending_share) +
+        words.str() + " (allowed: " + in_words(100 * ending_share) +
         "): the run ends; take a smaller time.cfl or grid.cell_m, or a load that the soil can carry");
   }
   if (seen.warned_energy) return;
