@@ -188,7 +188,7 @@ void run_study(const StudyArguments& arguments) {
                 std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
                 (folder ? "continue with --resume" : "they are not kept without -o"));
   const auto summary = study::summary_of(study, prepared, pieces);
-  const std::string json = as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string json = cli::as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (folder) {
     io::publish_text(folder->file("study.json"), json);
     io::publish_text(folder->file("study.csv"), as_csv(study, summary));
