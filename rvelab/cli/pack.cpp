@@ -19,6 +19,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/plausible.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -136,7 +137,7 @@ void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool jso
     Json rows = Json::array();
     for (const Job& job : jobs) {
       rows.push_back(job.made);
-      rows.back().update(as_json(job.sizes));
+      rows.back().update(cli::as_json(job.sizes));
     }
     listing.add_to_json("specimens", std::move(rows));
   }

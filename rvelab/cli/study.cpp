@@ -175,7 +175,7 @@ void run_study(const StudyArguments& arguments) {
                 std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
                 (folder ? "continue with --resume" : "they are not kept without -o"));
   const auto summary = study::summary_of(study, prepared, pieces);
-  const std::string json = json_text(as_json(study, summary));
+  const std::string json = json_text(cli::as_json(study, summary));
   if (folder) {
     io::publish_text(folder->file("study.json"), json);
     io::publish_text(folder->file("study.csv"), as_csv(study, summary));

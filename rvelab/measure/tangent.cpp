@@ -26,7 +26,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 /// A contact with the rows dF, dT_i, dT_j of its law, and the law's share of unloading (rows times dl).
-struct Spring {
+struct LinearSpring {
   const ContactState* contact;
   Matrix9 law;                        ///< with half of the unloading terms
   Vector9 unloading;                  ///< half of the unloading terms; the other half is +- |dl|
@@ -48,7 +48,7 @@ Matrix3 crossed(const Vector3& a) {
 /// A contact of members of two bodies, offsets o from the bodies' centres: the members' branch moves by
 /// db + dtheta_j x o_j - dtheta_i x o_i, their force turns the bodies by +- o x F, and the offset turns under the
 /// force.
-Spring spring_of_bodies(const Network& network, const ContactState& contact) {
+LinearSpring spring_of_bodies(const Network& network, const ContactState& contact) {
   ContactState of_members = contact;
   of_members.branch = contact.member_branch;
   const double ri = network.members[std::size_t(contact.member_i)].radius,
@@ -59,7 +59,7 @@ Spring spring_of_bodies(const Network& network, const ContactState& contact) {
   Matrix9 to_bodies = Matrix9::Identity();
   to_bodies.block<3, 3>(3, 0) = -crossed(contact.offset_i);
   to_bodies.block<3, 3>(6, 0) = crossed(contact.offset_j);
-  Spring spring{&contact, Matrix9::Zero(), Vector9::Zero()};
+  LinearSpring spring{&contact, Matrix9::Zero(), Vector9::Zero()};
   Matrix9 law = rows_of(linearised(of_members, ri, rj, network.model.slip));
   spring.opening = to_members.topRows<3>().transpose() * contact.normal;
   if (rescales(network)) {
@@ -77,12 +77,13 @@ Spring spring_of_bodies(const Network& network, const ContactState& contact) {
 
 /// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
-Spring spring_of(const Network& network, const ContactState& contact) {
+LinearSpring spring_of(const Network& network, const ContactState& contact) {
   const GrainState &i = network.grains[contact.i], &j = network.grains[contact.j];
   const bool unloads = rescales(network);
   if (network.has_bodies() && !network.has_solids()) return spring_of_bodies(network, contact);
   if (is_round(network.shape)) {
-    Spring spring{&contact, rows_of(linearised(contact, i.radius, j.radius, network.model.slip)), Vector9::Zero()};
+    LinearSpring spring{&contact, rows_of(linearised(contact, i.radius, j.radius, network.model.slip)),
+                        Vector9::Zero()};
     if (!unloads) return spring;
     const Matrix9 half = 0.5 * rows_of(unloading_terms(contact, i.radius, j.radius));
     spring.law += half;
@@ -93,7 +94,7 @@ Spring spring_of(const Network& network, const ContactState& contact) {
       network.has_solids() ? linearised_solids(contact, i, network.axes[std::size_t(contact.i)], j,
                                                network.axes[std::size_t(contact.j)], hertz_radius(network))
                            : linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
-  Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
+  LinearSpring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (!unloads) return spring;
   const Matrix9 half = 0.5 * rows_of(linear.unloading);
   spring.law += half;
@@ -101,7 +102,7 @@ Spring spring_of(const Network& network, const ContactState& contact) {
   return spring;
 }
 
-Spring spring_of(const Network& network, const InteractionState& other) {
+LinearSpring spring_of(const Network& network, const InteractionState& other) {
   const LinearContact linear =
       linearised(other, network.grains[std::size_t(other.i)].radius, network.grains[std::size_t(other.j)].radius);
   return {&other, rows_of(linear), Vector9::Zero()};
@@ -170,7 +171,7 @@ class Condensed {
     StressChange change;
     if (springs_.empty()) return change.value(network_, strain);
     const Vector x = balance(strain);
-    for (const Spring& spring : springs_) {
+    for (const LinearSpring& spring : springs_) {
       const Vector9 q = motion(spring, strain, x);
       const Vector9 response = spring.law * q + spring.unloading * std::abs(elongation(spring, q));
       change.add(*spring.contact, response.head<3>(), q.head<3>());
@@ -208,15 +209,15 @@ class Condensed {
     return p;
   }
 
-  int number_i(const Spring& spring) const { return number_[spring.contact->i]; }
-  int number_j(const Spring& spring) const { return number_[spring.contact->j]; }
+  int number_i(const LinearSpring& spring) const { return number_[spring.contact->i]; }
+  int number_j(const LinearSpring& spring) const { return number_[spring.contact->j]; }
 
   void factorise() {
     if (springs_.empty()) return;
     p_ = compatibility();
     std::vector<std::array<int, 2>> pairs;
     pairs.reserve(springs_.size());
-    for (const Spring& spring : springs_) pairs.push_back({number_i(spring), number_j(spring)});
+    for (const LinearSpring& spring : springs_) pairs.push_back({number_i(spring), number_j(spring)});
     factors_ = BlockFactors<F>(std::size_t(count_), pairs);
     for (std::size_t s = 0; s < springs_.size(); ++s) {
       const Eigen::Matrix<double, 2 * F, 2 * F> local = -p_.transpose() * springs_[s].law * p_;
@@ -232,12 +233,12 @@ class Condensed {
     }
   }
 
-  Vector9 motion(const Spring& spring, const CellStrain& strain, const Vector& x) const {
+  Vector9 motion(const LinearSpring& spring, const CellStrain& strain, const Vector& x) const {
     return strain.mean_motion(*spring.contact) + p_.template leftCols<F>() * x.segment<F>(F * number_i(spring)) +
            p_.template rightCols<F>() * x.segment<F>(F * number_j(spring));
   }
 
-  double elongation(const Spring& spring, const Vector9& q) const {
+  double elongation(const LinearSpring& spring, const Vector9& q) const {
     return is_round(network_.shape) && !network_.has_bodies() ? spring.contact->normal.dot(q.head<3>())
                                                               : spring.opening.dot(q);
   }
@@ -245,7 +246,7 @@ class Condensed {
   /// Unbalanced load on the degrees of freedom at the motion x, into `load`; its largest component.
   double residual(const CellStrain& strain, const Vector& x, Vector& load) const {
     load.setZero();
-    for (const Spring& spring : springs_) {
+    for (const LinearSpring& spring : springs_) {
       const Vector9 q = motion(spring, strain, x);
       const Eigen::Matrix<double, 2 * F, 1> local =
           p_.transpose() * (spring.law * q + spring.unloading * std::abs(elongation(spring, q)));
@@ -284,7 +285,7 @@ class Condensed {
   /// Largest force that a contact feels when all grains move with the strain, N.
   double load_scale(const CellStrain& strain) const {
     double largest = 0;
-    for (const Spring& spring : springs_) {
+    for (const LinearSpring& spring : springs_) {
       const Vector9 q = strain.mean_motion(*spring.contact);
       largest = std::max(largest, (spring.law.topRows<3>() * q).cwiseAbs().maxCoeff());
     }
@@ -295,7 +296,7 @@ class Condensed {
   int count_ = 0;  ///< grains
   double length_ = 0;
   std::vector<int> number_;  ///< of each grain among them, -1 of rattlers
-  std::vector<Spring> springs_;
+  std::vector<LinearSpring> springs_;
   Eigen::Matrix<double, 9, 2 * F> p_;
   BlockFactors<F> factors_;
 };

@@ -14,6 +14,9 @@
 
 namespace rvelab::test {
 
+/// Settings of a biaxial test of a second or two.
+constexpr const char* brief = " --set stage.compression.to_strain=0.01 --set test.pressure_Pa=20e3 ";
+
 struct Outcome {
   int code;
   std::string output, errors;

@@ -8,8 +8,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr const char* brief = " --set stage.compression.to_strain=0.01 --set test.pressure_Pa=20e3 ";
-
 Workplace& with_packings(Workplace& here) {
   here.import_packing("dense_p20", "S_a.h5");
   here.import_packing("medium_p20", "S_b.h5");

@@ -9,8 +9,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr const char* brief = " --set stage.compression.to_strain=0.01 --set test.pressure_Pa=20e3 ";
-
 std::string as_rank(int rank, int count, const std::string& arguments, const std::string& after = "") {
   return "OMPI_COMM_WORLD_RANK=" + std::to_string(rank) + " OMPI_COMM_WORLD_SIZE=" + std::to_string(count) + " '" +
          RVELAB_PROGRAM + "' " + arguments + " >rank" + std::to_string(rank) + ".out 2>rank" + std::to_string(rank) +
