@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Ellipses: axis of stiffness of bedded specimens, friction angle against aspect ratio and bedding angle, simple shear
 along and across the bedding, fabric at the critical state from three starts.
 
@@ -10,19 +9,18 @@ Bars, with the standard errors of the means:
 - sheared along and across the bedding the peaks differ by more than three, the last thirds by less than three;
 - the fabrics of two starts, apart by more than five errors at rest, end within three and a fifth of what they were.
 
-    tools/validate.d/ellipses.py build/release/bin/rvelab [--scale 1] [--only PART] [--figure FILE.png]
+    ellipses.py RVELAB WORK RESULTS [--scale 1] [--only PART]
 """
 
 import argparse
-import concurrent.futures
 import math
 import os
-import subprocess
-import sys
-import tempfile
 
 import h5py
 import numpy as np
+
+import harness
+from harness import in_turn, once, packed, results, sets, sine_of, work
 
 ASPECTS = [1, 0.8, 0.6, 0.4, 0.2]
 BEDDINGS = [0, 15, 30, 45, 60, 75, 90]
@@ -35,37 +33,18 @@ ASPECT_STRAIN, BEDDING_STRAIN, SHEAR_STRAIN, FABRIC_STRAIN = 0.3, 0.12, 1.0, 3.0
 PEAK_STRAIN, PEAK_SHEAR = 0.08, 0.2
 
 
-class Bench:
-    def __init__(self, program, folder, threads):
-        self.program, self.folder = program, folder
-        self.pool = concurrent.futures.ThreadPoolExecutor(threads)
+def test(protocol, name, packing, settings):
+    specimen = packed("pack_bedded", name, *packing, options=("--threads", 1))
+    return h5py.File(once(work / f"{name}_{protocol}.h5", "run", protocol, "--specimen", specimen, *sets(*settings)))
 
-    def call(self, words, settings):
-        for setting in settings:
-            words += ["--set", setting]
-        done = subprocess.run([self.program] + words, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError(" ".join(words) + ": " + done.stderr.strip())
-        return done.stdout
 
-    def specimen(self, name, settings):
-        path = os.path.join(self.folder, name + ".h5")
-        if not os.path.exists(path):
-            self.call(["pack", "pack_bedded", "-o", path, "--threads", "1"], settings)
-        return path
-
-    def test(self, protocol, name, packing, settings):
-        path = os.path.join(self.folder, name + "_" + protocol + ".h5")
-        self.call(["run", protocol, "--specimen", self.specimen(name, packing), "-o", path], settings)
-        return h5py.File(path)
-
-    def each(self, work, items):
-        return list(self.pool.map(work, items))
+def each(make, items):
+    """In the order of the items, on as many threads as there are cores."""
+    return list(in_turn(make, items, os.cpu_count()))
 
 
 def mean_and_error(values):
-    values = np.asarray(values, dtype=float)
-    return values.mean(), values.std(ddof=1), values.std(ddof=1) / math.sqrt(len(values))
+    return np.mean(values), np.std(values, ddof=1), harness.mean_error(values)[1]
 
 
 def sines(records):
@@ -73,7 +52,7 @@ def sines(records):
     last = records["records/stage"][:] == records["records/stage"][:].max()
     stress = -records["records/stress_Pa"][:][last][:, :2, :2]
     principal = np.linalg.eigvalsh(0.5 * (stress + stress.transpose(0, 2, 1)))
-    return (principal[:, 1] - principal[:, 0]) / principal.sum(axis=1), np.abs(records["records/strain"][:][last])
+    return sine_of(principal[:, 1], principal[:, 0]), np.abs(records["records/strain"][:][last])
 
 
 def angles(records):
@@ -93,19 +72,19 @@ def print_row(title, values, unit=" degrees", digits=2):
     return mean, deviation, error
 
 
-def stiffness_axes(bench, count):
+def stiffness_axes(count):
     """pack_bedded as it is shipped, 414 grains."""
     print("Axis of stiffness of bedded specimens, atan2(2 (C16 + C26), C11 - C22)/2 (pack_bedded, method = linear)")
     failures = []
     for angle in (0, 30):
         def probe(seed, angle=angle):
             packing = [f"pack.seed={seed}", f"grains.bedding_angle_deg={angle}"]
-            with bench.test("probe", f"axis_{angle}_{seed}", packing, [PRESSURE, "stage.probe.method=linear"]) as found:
+            with test("probe", f"axis_{angle}_{seed}", packing, [PRESSURE, "stage.probe.method=linear"]) as found:
                 stiffness = found["probes/stiffness_Pa"][-1]
             # Of an axis that is known up to half a turn.
             away = (axis_of(stiffness) - angle + 90) % 180 - 90
             return away, stiffness[0, 0] / stiffness[1, 1]
-        found = bench.each(probe, range(1, count + 1))
+        found = each(probe, range(1, count + 1))
         mean, _, error = print_row(f"bedding {angle:2d}: axis less bedding", [axis for axis, _ in found])
         if angle == 0:
             print_row("bedding  0: C11/C22", [ratio for _, ratio in found], "")
@@ -122,9 +101,9 @@ def packing_of(aspect, angle, spread, seed):
                             f"grains.bedding_spread_deg={spread}"]
 
 
-def biaxial(bench, name, packing, strain):
+def biaxial(name, packing, strain):
     settings = [PRESSURE, f"stage.compression.to_strain={strain}", "stage.compression.record_every=0.002"]
-    with bench.test("biaxial", name, packing, settings) as found:
+    with test("biaxial", name, packing, settings) as found:
         return angles(found)
 
 
@@ -140,14 +119,14 @@ def combined(means, weights):
     return total, total / math.sqrt(sum((weight * error) ** 2 for weight, (_, _, error) in zip(weights, means)))
 
 
-def against_aspect(bench, count):
+def against_aspect(count):
     print(f"Friction angle of random specimens against the aspect ratio (biaxial to {ASPECT_STRAIN:g}, {NUMBER} "
           "grains)")
     means = {"peak": [], "last third": []}
     for aspect in ASPECTS:
-        def test(seed, aspect=aspect):
-            return biaxial(bench, f"aspect_{aspect}_{seed}", packing_of(aspect, 0, 90, seed), ASPECT_STRAIN)
-        found = bench.each(test, range(1, count + 1))
+        def angles_of(seed, aspect=aspect):
+            return biaxial(f"aspect_{aspect}_{seed}", packing_of(aspect, 0, 90, seed), ASPECT_STRAIN)
+        found = each(angles_of, range(1, count + 1))
         for column, title in enumerate(means):
             means[title].append(print_row(f"aspect ratio {aspect}: {title}", [angles[column] for angles in found]))
     failures = []
@@ -167,34 +146,33 @@ def against_aspect(bench, count):
     return failures
 
 
-def against_bedding(bench, count, figure):
+def against_bedding(count):
     print(f"Friction angle against the bedding angle, compression along y (aspect ratio 0.6, spread 30, biaxial to "
           f"{BEDDING_STRAIN:g}, {NUMBER} grains)")
     table = []
     for angle in BEDDINGS:
-        def test(seed, angle=angle):
-            return biaxial(bench, f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed), BEDDING_STRAIN)
-        found = bench.each(test, range(1, count + 1))
+        def angles_of(seed, angle=angle):
+            return biaxial(f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed), BEDDING_STRAIN)
+        found = each(angles_of, range(1, count + 1))
         peak = print_row(f"bedding {angle:2d}: peak", [peak for peak, _ in found])
         table.append((angle, peak, print_row(f"bedding {angle:2d}: last third", [last for _, last in found])))
-    if figure:
-        draw(table, figure)
+    draw(table)
     more, errors = errors_apart(table[0][1], table[-1][1])
     print(f"  across the bed less along it: {more:.2f} degrees, {errors:.1f} standard errors")
     return [] if errors > 3 else [f"a bed is no stronger pressed across than along it ({more:.1f} degrees)"]
 
 
-def shear(bench, count):
+def shear(count):
     print(f"Friction angle in drained simple shear v_x(y), bedding along and across the shear (aspect ratio 0.6, to "
           f"{SHEAR_STRAIN:g}, {NUMBER} grains)")
     means = {}
     for title, angle in (("along", 0), ("across", 90)):
-        def test(seed, angle=angle):
+        def angles_of(seed, angle=angle):
             settings = [PRESSURE, f"stage.shear.to_strain={SHEAR_STRAIN}", "stage.shear.record_every=0.004"]
-            with bench.test("simple_shear_drained", f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed),
+            with test("simple_shear_drained", f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed),
                             settings) as found:
                 return angles(found)
-        found = bench.each(test, range(1, count + 1))
+        found = each(angles_of, range(1, count + 1))
         means[title] = (print_row(f"{title}: peak", [peak for peak, _ in found]),
                         print_row(f"{title}: last third", [last for _, last in found]))
     peaks, peak_errors = errors_apart(means["across"][0], means["along"][0])
@@ -209,7 +187,7 @@ def shear(bench, count):
     return failures
 
 
-def peaks(bench, count):
+def peaks(count):
     """The two differences of the peak by more specimens, strained past it only: they scatter by 1.8 degrees, so that ten of each tell
     2.4 degrees from nothing by three standard errors, forty 1.2."""
     print(f"Peaks by more specimens, compression to {PEAK_STRAIN:g}, shear to {PEAK_SHEAR:g}")
@@ -218,11 +196,11 @@ def peaks(bench, count):
                                            ("shear, across less along", "simple_shear_drained", "shear", PEAK_SHEAR)):
         means = {}
         for angle in (0, 90):
-            def test(seed, angle=angle, protocol=protocol, stage=stage, strain=strain):
+            def angles_of(seed, angle=angle, protocol=protocol, stage=stage, strain=strain):
                 settings = [PRESSURE, f"stage.{stage}.to_strain={strain}", f"stage.{stage}.record_every=0.002"]
-                with bench.test(protocol, f"peak_{angle}_{seed}", packing_of(0.6, angle, 30, seed), settings) as found:
+                with test(protocol, f"peak_{angle}_{seed}", packing_of(0.6, angle, 30, seed), settings) as found:
                     return angles(found)[0]
-            found = bench.each(test, range(1, count + 1))
+            found = each(angles_of, range(1, count + 1))
             means[angle] = print_row(f"{protocol}, bedding {angle:2d}: peak", found)
         # The bed lies across the compression at 0 degrees, across the shear at 90.
         across, along = (means[0], means[90]) if protocol == "biaxial" else (means[90], means[0])
@@ -241,19 +219,19 @@ def fabrics_of(records):
     return fabric[0], fabric[strain > 0.9 * strain.max()].mean(axis=0)
 
 
-def critical_fabric(bench, count):
+def critical_fabric(count):
     print(f"Fabric of orientations in drained simple shear to {FABRIC_STRAIN:g} from three starts (aspect ratio 0.6, "
           f"{NUMBER} grains)")
     starts = {"bedding 0": (0, 30), "bedding 90": (90, 30), "random": (0, 90)}
     means = {}
     for title, (angle, spread) in starts.items():
-        def test(seed, angle=angle, spread=spread):
+        def angles_of(seed, angle=angle, spread=spread):
             settings = [PRESSURE, f"stage.shear.to_strain={FABRIC_STRAIN}", "stage.shear.record_every=0.02",
                         'output.quantities=["orientation_fabric"]']
-            with bench.test("simple_shear_drained", f"critical_{angle}_{spread}_{seed}",
+            with test("simple_shear_drained", f"critical_{angle}_{spread}_{seed}",
                             packing_of(0.6, angle, spread, seed), settings) as found:
                 return fabrics_of(found)
-        found = bench.each(test, range(1, count + 1))
+        found = each(angles_of, range(1, count + 1))
         means[title] = [[print_row(f"{title}, {when}: {name}", [fabrics[at][part] for fabrics in found], "", 3)
                          for part, name in enumerate(("phi_xx - phi_yy", "2 phi_xy"))]
                         for at, when in enumerate(("at rest", "at the end"))]
@@ -271,10 +249,8 @@ def critical_fabric(bench, count):
     return failures
 
 
-def draw(table, path):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+def draw(table):
+    plt = harness.pyplot()
     figure, axes = plt.subplots(figsize=(5, 3.5))
     for column, title in ((1, "peak"), (2, "mean of the last third")):
         axes.errorbar([row[0] for row in table], [row[column][0] for row in table],
@@ -285,30 +261,24 @@ def draw(table, path):
     axes.legend()
     axes.grid(alpha=0.3)
     figure.tight_layout()
-    figure.savefig(path, dpi=80)
+    figure.savefig(results / "ellipses.png", dpi=80)
 
 
 def main():
+    parts = {"axes": (stiffness_axes, AXES), "aspect": (against_aspect, ASPECT), "bedding": (against_bedding, BEDDING),
+             "shear": (shear, SHEAR), "peaks": (peaks, PEAKS), "fabric": (critical_fabric, FABRIC)}
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
     parser.add_argument("--scale", type=float, default=1, help="of the number of specimens of each mean")
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--figure", help="friction angle against bedding angle")
-    parser.add_argument("--only", choices=["axes", "aspect", "bedding", "shear", "peaks", "fabric"], help="this table only")
-    options = parser.parse_args()
+    parser.add_argument("--only", choices=list(parts), help="this table only")
+    options = parser.parse_args(harness.words)
     failures = []
-    with tempfile.TemporaryDirectory() as folder:
-        bench = Bench(os.path.abspath(options.program), folder, options.threads)
-        parts = {"axes": (stiffness_axes, AXES), "aspect": (against_aspect, ASPECT),
-                 "bedding": (lambda bench, count: against_bedding(bench, count, options.figure), BEDDING),
-                 "shear": (shear, SHEAR), "peaks": (peaks, PEAKS), "fabric": (critical_fabric, FABRIC)}
-        for name, (part, specimens) in parts.items():
-            if options.only in (None, name):
-                failures += part(bench, max(2, round(options.scale * specimens)))
+    for name, (part, specimens) in parts.items():
+        if options.only in (None, name):
+            failures += part(max(2, round(options.scale * specimens)))
     for failure in failures:
         print("FAILED: " + failure)
-    return 1 if failures else 0
+    return failures
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    harness.main(main)

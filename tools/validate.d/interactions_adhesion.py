@@ -17,7 +17,7 @@ import pathlib
 import numpy as np
 
 import interactions_packing as packings
-from verdict import verdict
+from harness import verdict
 
 YOUNG, POISSON, GAMMA, RADIUS, DENSITY = 1e7, 0.25, 0.3, 1e-3, 2650
 MODULUS = YOUNG / (2 * (1 - POISSON**2))

@@ -22,13 +22,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/python"))
+import harness
+
+sys.path.insert(0, str(harness.ROOT / "tools/python"))
 import rvelab  # noqa: E402
 
 YADE = pathlib.Path(__file__).with_name("interactions_yade.py")
@@ -75,10 +75,7 @@ moment_factor = {factor}
 
 
 def run(words, **options):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, **options)
-    if done.returncode != 0:
-        raise SystemExit(f"{words[0]}: {done.stdout[-600:]}{done.stderr[-600:]}")
-    return done.stdout
+    return harness.run(*words, **options).stdout
 
 
 def in_yade(script, folder, job):

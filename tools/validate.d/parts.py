@@ -70,7 +70,7 @@ PARTS = [
     Part("ellipses", 90, "bedded ellipses: axes of stiffness, strength, shear, fabric"),
     Part("force_fabric", 2, "stress of force and fabric where grains are flat and lie in beds"),
     Part("shapes", 15, "friction angles against elongation and blockiness of grains in space"),
-    Part("karlsruhe", 40, "a published sand fitted on three tests and predicted in three", words="--count 5"),
+    Part("karlsruhe", 40, "a published sand fitted on three tests and predicted in three"),
     Part("study", 5, "errors and their estimates over the tolerances", "check studies $work/study tolerance"),
     Part("studies", 60, "studies of scale: space, number of grains, stiffness over pressure; and of damping"),
     increments("estimates", 60, "increments of packings drawn by seed, RVELAB_INCREMENTS (28) of each of three states of 36",
@@ -83,7 +83,7 @@ PARTS = [
     increments("estimates_all", 20, "every error, of chaotic increments too, on seventy packings never fitted", "620 689 10"),
     Part("pieces", 20, "one path, whole and in pieces of 1e-7, with turns", targets="rvelab-pieces", times=True),
     Part("starts", 5, "a path of 1e-3, from rest, going on and back, in up to 10,000 pieces", targets="rvelab-starts", times=True,
-         command="check starts $work/starts build/release/bin/rvelab-starts"),
+         command="packings starts dense hertz\nbuild/release/bin/rvelab-starts $work/starts/{dense,hertz}.h5"),
     Part("orders", 20, "orders of the time step and of the loading rate", targets="rvelab-orders",
          command="check starts $work/orders build/release/bin/rvelab-orders"),
     Part("package", 90, "all packages in bare systems: installed, used, removed without a trace", packages="debootstrap", command="""
@@ -180,6 +180,11 @@ BY_NAME = {part.name: part for part in PARTS}
 FUNCTIONS = r"""
 set -euo pipefail
 check() { $python "tools/validate.d/$1.py" "$program" "$2" "$results" "${@:3}"; }
+# packings FOLDER NAME...: of the recipes pack_NAME.
+packings() {
+  mkdir -p "$work/$1"
+  for each in "${@:2}"; do "$program" pack "pack_$each" -o "$work/$1/$each.h5" --force >/dev/null; done
+}
 # same_stresses BUILD PATIENCE: the quick cases of tests/extreme of build/BUILD beside those of the release build.
 same_stresses() {
   RVELAB_CASES=quick RVELAB_JSON=$work/release.json build/release/bin/test_extreme "the matrix" || true
