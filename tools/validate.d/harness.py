@@ -27,7 +27,7 @@ program, work, results = (pathlib.Path(word).resolve() for word in (*sys.argv[1:
 mpm = program.with_name("rvelab-mpm")
 words = sys.argv[4:]
 
-ENTRY = "\x1e"  # begins a line of standard output that is an entry of the kept table, as JSON
+ENTRY = "\x01"  # begins a line of standard output that is an entry of the kept table, as JSON
 COMPLETE_BUT_MISSED = 3  # exit code
 judges, missed, different = {}, [], []
 totals = False  # whether the rows are counted at the end

@@ -53,18 +53,18 @@ def text(table):
     return "\n".join(head + [line for each in table["entries"] for line in text_of(each)]) + "\n"
 
 
-def keep(name, table, folder=RESULTS):
+def keep(name, table, folder=None):
     """Both files, each whole or as it was."""
-    (folder / "tables").mkdir(parents=True, exist_ok=True)
+    path_of(name, folder).parent.mkdir(parents=True, exist_ok=True)
     write(path_of(name, folder), json.dumps(table, indent=1, ensure_ascii=False) + "\n")
-    write(folder / f"{name}.txt", text(table))
+    write((folder or RESULTS) / f"{name}.txt", text(table))
 
 
-def path_of(name, folder=RESULTS):
-    return folder / "tables" / f"{name}.json"
+def path_of(name, folder=None):
+    return (folder or RESULTS) / "tables" / f"{name}.json"
 
 
-def read(name, folder=RESULTS):
+def read(name, folder=None):
     path = path_of(name, folder)
     return json.loads(path.read_text()) if path.exists() else None
 
@@ -86,7 +86,7 @@ def minutes(part, table):
     return (table or {}).get("core_minutes") or part.minutes
 
 
-def stale(part, now, failures, folder=RESULTS):
+def stale(part, now, failures, folder=None):
     """Why the table of a part is out of date, None where it is not. now: the version at hand; failures: folder of what parts
     printed that failed."""
     table = read(name_of(part.name), folder)
@@ -101,7 +101,7 @@ def stale(part, now, failures, folder=RESULTS):
     return None
 
 
-def out_of_date(parts, now, failures, folder=RESULTS):
+def out_of_date(parts, now, failures, folder=None):
     """(part, why, minutes of a core): the oldest version first, the cheapest first among equals."""
     found = []
     for part in parts:

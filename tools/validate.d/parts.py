@@ -85,7 +85,7 @@ PARTS = [
     Part("starts", 5, "a path of 1e-3, from rest, going on and back, in up to 10,000 pieces", targets="rvelab-starts", times=True,
          command="packings starts dense hertz\nbuild/release/bin/rvelab-starts $work/starts/{dense,hertz}.h5"),
     Part("orders", 20, "orders of the time step and of the loading rate", targets="rvelab-orders",
-         command="check starts $work/orders build/release/bin/rvelab-orders"),
+         command="packings orders dense hertz\nbuild/release/bin/rvelab-orders $work/orders/{dense,hertz}.h5"),
     Part("package", 90, "all packages in bare systems: installed, used, removed without a trace", packages="debootstrap", command="""
          tools/package $work/packages >$work/packages.log 2>&1 || { tail -n 20 $work/packages.log >&2; exit 1; }
          sed -n '/^package: /,$p' $work/packages.log
