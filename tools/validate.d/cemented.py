@@ -172,12 +172,10 @@ def draw(path, families):
                     axes[3].plot(strain, 100 * np.mean([each[f"bonds_broken_in_{mode}"][:length] / n for each, n in zip(curves, whole)], axis=0),
                                  style, color=colour, label=f"{strength / 1e3:.0f} kPa, {mode}")
         for axis, what in ((axes[0], "q (kPa)"), (axes[1], "volume strain (%), expansion"), (axes[3], "broken bonds (%)")):
-            axis.set_xlabel("axial strain (%)")
-            axis.set_ylabel(what)
+            axis.set(xlabel="axial strain (%)", ylabel=what)
         axes[0].set_title(f"{name}, {low / 1e3:.0f} kPa: mean and range of {len(curves)}", fontsize=10, loc="left")
         axes[2].set_title("peaks and envelopes", fontsize=10, loc="left")
-        axes[2].set_xlabel(r"$\sigma_3$ (kPa)")
-        axes[2].set_ylabel(r"$\sigma_1$ (kPa)")
+        axes[2].set(xlabel=r"$\sigma_3$ (kPa)", ylabel=r"$\sigma_1$ (kPa)")
         axes[2].set_xlim(left=0)
         axes[2].set_ylim(bottom=0)
         axes[0].legend(fontsize=8)

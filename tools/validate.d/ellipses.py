@@ -255,9 +255,8 @@ def draw(table):
     for column, title in ((1, "peak"), (2, "mean of the last third")):
         axes.errorbar([row[0] for row in table], [row[column][0] for row in table],
                       yerr=[row[column][2] for row in table], fmt="o-", capsize=3, label=title)
-    axes.set_xlabel("bedding angle against the horizontal (degrees)")
-    axes.set_ylabel("friction angle (degrees)")
-    axes.set_xticks(BEDDINGS)
+    axes.set(xlabel="bedding angle against the horizontal (degrees)", ylabel="friction angle (degrees)",
+             xticks=BEDDINGS)
     axes.legend()
     axes.grid(alpha=0.3)
     figure.tight_layout()

@@ -44,8 +44,7 @@ def main():
         axes.plot(max(row[0], 0.5), ratio, ">" if runs_out else "o", color="tab:blue", mfc="w" if runs_out else None)
     axes.plot([], [], ">", color="tab:blue", mfc="w", label="not within 200 cycles")
     axes.legend(frameon=False)
-    axes.set_xlabel("cycles to p < 2 % of its start")
-    axes.set_ylabel("stress ratio $\\tau/p_0$")
+    axes.set(xlabel="cycles to p < 2 % of its start", ylabel="stress ratio $\\tau/p_0$")
     axes.grid(color="0.9")
     figure.savefig(results / "liquefaction.png", bbox_inches="tight")
     cycles = [row[0] for row in rows]

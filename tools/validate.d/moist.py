@@ -193,8 +193,7 @@ def draw(path, rows, fits, found, strains):
         axes[0].plot(100 * each[0]["strains"], np.mean([row["curve"] for row in each], axis=0) / 1e3, color=plt.cm.viridis(0.2 * k),
                      label=f"{s / 1e3:.0f} kPa" if s else "dry")
     axes[0].set_title(f"{low / 1e3:.0f} kPa: mean of {len(rows[0, low])}", fontsize=10, loc="left")
-    axes[0].set_xlabel("axial strain (%)")
-    axes[0].set_ylabel("q (kPa)")
+    axes[0].set(xlabel="axial strain (%)", ylabel="q (kPa)")
     axes[0].legend(fontsize=8, title="suction", title_fontsize=8)
     suction = np.array(SUCTIONS) / 1e3
     error = lambda values: np.std(values, ddof=1) / np.sqrt(len(values))
@@ -204,8 +203,7 @@ def draw(path, rows, fits, found, strains):
                  "k--", label=r"$p_c \tan\varphi_{dry}$")
     axes[1].set_xscale("log")
     axes[1].set_ylim(bottom=0)
-    axes[1].set_xlabel("suction (kPa)")
-    axes[1].set_ylabel("Pa")
+    axes[1].set(xlabel="suction (kPa)", ylabel="Pa")
     axes[1].legend(fontsize=8)
     water = [np.mean([row["saturation"] for row in rows[s, low]]) for s in SUCTIONS]
     axes[2].loglog(water, [np.mean([row["p_c"] for row in rows[s, low]]) / s for s in SUCTIONS], "o-", label=r"$\chi = p_c/s$")
@@ -215,8 +213,7 @@ def draw(path, rows, fits, found, strains):
     for (stretch, pressure), e in found.items():
         axes[3].plot(e[:, 0], strains[stretch, pressure], "o" if pressure < 2e3 else "s", markersize=4,
                      label=f"{pressure / 1e3:.0f} kPa, stretched {100 * (stretch - 1):.0f} %")
-    axes[3].set_xlabel("void ratio, moist")
-    axes[3].set_ylabel("collapse (% of the volume)")
+    axes[3].set(xlabel="void ratio, moist", ylabel="collapse (% of the volume)")
     axes[3].legend(fontsize=7)
     figure.savefig(path, dpi=80)
 

@@ -39,6 +39,48 @@ def run(name, scene, *options):
     return columns(work / name / "history.csv"), printed.read_text()
 
 
+def with_soil(name, scene, soil, *edits):
+    """WORK/name.toml: a scene without its cases, with a continuum in the place of its grains, and further edits (old, new)."""
+    text = (PROTOCOLS / "mpm" / scene).read_text().split("\n[case.")[0]
+    begin, end = text.index("[[material]]"), text.index("[[region]]")
+    text = (text[:begin] + soil + text[end:]).replace('"dense"', '"soil"')
+    for old, new in edits:
+        text = text.replace(old, new)
+    path = work / f"{name}.toml"
+    path.write_text(text)
+    return path
+
+
+def mohr_coulomb(angle, density=2000, young=20e6, cohesion=0, more=""):
+    return f'''[[material]]
+name = "soil"
+kind = "mohr_coulomb"
+density_kg_m3 = {density:g}
+young_modulus_Pa = {young:g}
+friction_angle_deg = {angle:g}
+cohesion_Pa = {cohesion:g}
+{more}
+
+'''
+
+
+def moving_mean(values, width, mode="same"):
+    """Over so many rows."""
+    return np.convolve(values, np.ones(width) / width, mode)
+
+
+def rows_in(time, span):
+    """Rows of a history in a span of time (s), one at least."""
+    return max(1, round(span / np.median(np.diff(time))))
+
+
+def front(position, cell, apart=1):
+    """Where a deposit ends, m: the first gap of more than so many cells along x."""
+    x = np.sort(position[:, 0])
+    gaps = np.flatnonzero(np.diff(x) > apart * cell)
+    return x[gaps[0]] if len(gaps) else x[-1]
+
+
 def frames(name):
     return sorted((work / name).glob("points_*.h5"))
 
@@ -77,9 +119,30 @@ def energy_parts(h):
 
 def peak_of(axial, q):
     """Stress (kPa) and strain where the running mean of three rows is largest, and the mean from 10 to 16 % (kPa)."""
-    smooth = np.convolve(q, np.ones(3) / 3, "same")
+    smooth = moving_mean(q, 3)
     k = smooth[1:-1].argmax() + 1
     return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
+
+
+def cone(angle):
+    """Slope of the outer cone of Drucker and Prager for an angle."""
+    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
+
+
+def softening_curve(plastic, angle, dilation, pressure, young, nu):
+    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) of a soil at deviatoric plastic strains, the lateral
+    stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic = dlambda/sqrt(3)."""
+    alpha, beta = cone(angle), cone(dilation)
+    q = 3 * alpha * pressure / (1 / np.sqrt(3) - alpha)
+    return q / young + (1 - np.sqrt(3) * beta) * plastic, q, q * (1 - 2 * nu) / young - 3 * np.sqrt(3) * beta * plastic
+
+
+def rough_spheres_bound(young, nu, share):
+    """Lower bound of Hashin and Shtrikman on E over that of the soil, rough rigid spheres."""
+    g, k = young / (2 * (1 + nu)), young / (3 * (1 - 2 * nu))
+    bulk = k + share / (1 - share) * (k + 4 / 3 * g)
+    shear = g + share / (1 - share) * 5 * g * (3 * k + 4 * g) / (6 * (k + 2 * g))
+    return 9 * bulk * shear / (3 * bulk + shear) / young
 
 
 def grain_steps(printed):

@@ -7,7 +7,7 @@ import numpy as np
 
 import harness
 import mpm as scenes
-from harness import PROTOCOLS, columns, once, records, sets
+from harness import columns, once, records, sets
 from mpm import folder, frames, specimen
 
 
@@ -78,31 +78,8 @@ poisson_ratio = {poisson:g}
 """
 
 
-MOHR_COULOMB = """[[material]]
-name = "{name}"
-kind = "mohr_coulomb"
-density_kg_m3 = {density:g}
-young_modulus_Pa = 5e6
-poisson_ratio = 0.3
-friction_angle_deg = {angle:g}
-
-"""
-
-
-def continuum_scene(name, scene, edits, material):
-    """FOLDER/name.toml: a scene without its cases, a continuum in place of its grains, and further edits."""
-    text = (PROTOCOLS / "mpm" / scene).read_text().split("\n[case.")[0]
-    begin, end = text.index("[[material]]"), text.index("[[region]]")
-    text = text[:begin] + material + text[end:]
-    for old, new in edits:
-        text = text.replace(old, new)
-    path = folder / f"{name}.toml"
-    path.write_text(text)
-    return path.resolve()
-
-
 def elastic_scene(name, scene, edits, **moduli):
-    return continuum_scene(name, scene, edits, ELASTIC.format(**moduli))
+    return scenes.with_soil(name, scene, ELASTIC.format(**moduli), *edits)
 
 
 # --- column -----------------------------------------------------------------------------------------------------------

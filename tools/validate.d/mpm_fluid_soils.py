@@ -6,19 +6,16 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    GRAVITY, MOHR_COULOMB, SOLIDS, WATER, continuum_scene, costs, family, frame_at, run, watched, with_options)
+    GRAVITY, SOLIDS, WATER, costs, family, frame_at, run, watched, with_options)
 from harness import bars, results, sets, verdict
-from mpm import folder, frames, picture
+from mpm import folder, frames, front, mohr_coulomb, moving_mean, picture, rows_in, with_soil
 
 
 GATE = 0.1  # s, when it is removed
 
 
-def front(frame, apart=1):
-    """Where the deposit ends, m: the first gap of more than so many cells along x."""
-    x = np.sort(frame["position_m"][:, 0])
-    gaps = np.flatnonzero(np.diff(x) > apart * frame["grid_cell_m"][0])
-    return x[gaps[0]] if len(gaps) else x[-1]
+def front_of(frame):
+    return front(frame["position_m"], frame["grid_cell_m"][0])
 
 
 COLUMN_OPTIONS = os.environ.get("RVELAB_MPM_COLUMN", "").split()
@@ -39,10 +36,10 @@ def column():
         e = np.mean(first["void_ratio"])
         whole = (SOLIDS / (1 + e) + WATER * n) * GRAVITY * 0.5
         mean = lambda at, field: np.nan if case == "dry" else np.mean(frame_at(name, GATE + at)[f"{field}_Pa"])
-        found[case] = {"e": e, "front 0.5": front(frame_at(name, GATE + 0.5)) - 1,
+        found[case] = {"e": e, "front 0.5": front_of(frame_at(name, GATE + 0.5)) - 1,
                        "excess 0.06": mean(0.06, "excess_pore_pressure"),
                        "water 0.06": mean(0.06, "pore_pressure"),
-                       "front": front(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
+                       "front": front_of(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
                        "peak at": t[np.argmax(h["kinetic_J"])], "potential": (h["potential_J"] / whole, t),
                        "end": t[-1], "excess": [mean(at, "excess_pore_pressure") for at in (0.06, 0.2, 0.5, t[-1])]}
         f = found[case]
@@ -86,11 +83,11 @@ def soil_column(name, *options, cell=0.1, points=4, water="", base=""):
              ("[output]", (f"[fluid]\nconductivity_m_s = 1e-2\nporosity = {POROSITY:g}\n\n" if water else "") + "[output]")]
     if base:
         edits += [("[[boundary]]\nname = \"base\"\nkind = \"fixed\"\naxis = \"y\"\nat_m = 0\n", base)]
-    material = MOHR_COULOMB.format(name="sand", density=SOLIDS * (1 - POROSITY), angle=ANGLE)
-    h, _ = run(name, continuum_scene(name, "column_saturated.toml", edits, material),
+    material = mohr_coulomb(ANGLE, SOLIDS * (1 - POROSITY), 5e6, more="poisson_ratio = 0.3").replace('"soil"', '"sand"')
+    h, _ = run(name, with_soil(name, "column_saturated.toml", material, *edits),
                *sets(*options))
     excess = np.mean(frame_at(name, GATE + 0.06)["excess_pore_pressure_Pa"]) if water else np.nan
-    return front(frame_at(name, GATE + 0.5)) - 1, excess, h["kinetic_J"].max()
+    return front_of(frame_at(name, GATE + 0.5)) - 1, excess, h["kinetic_J"].max()
 
 
 SMOOTH = """[[body]]
@@ -226,8 +223,7 @@ def shaken(name):
     w = watched(name)
     t, end = w["time_s"], w["time_s"][-1]
     late = t > 0.75 * end
-    window = np.ones(max(1, round(PERIOD / np.median(np.diff(t)))))
-    ratios = [np.convolve(w[f"{k}.pore_pressure_ratio"], window / len(window), mode="same") for k in (0, 1, 2)]
+    ratios = [moving_mean(w[f"{k}.pore_pressure_ratio"], rows_in(t, PERIOD)) for k in (0, 1, 2)]
     onset = [next((float(time) for time, ratio in zip(t, r) if ratio > 0.05), np.inf) for r in ratios]
     # Stress and place of B in each frame; the watched point is the nearest one.
     times, shear, aside, contacts = [], [], [], []

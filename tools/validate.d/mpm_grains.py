@@ -12,7 +12,7 @@ import numpy as np
 
 import harness
 from harness import sets, verdict
-from mpm import between_plates, folder, peak_of, run
+from mpm import between_plates, folder, peak_of, run, softening_curve
 
 DRAWN, PRESSURE, NU, SOLID = 0.045, 50e3, 0.12, 2600
 SEEDS = (1, 2, 3)
@@ -53,7 +53,7 @@ def shear(kind, share, seed, soil=None):
         if kind == "single":
             keys.append(f"grid.cell_m={cell:.3g}")
         if share:
-            keys.append(f'rock_soil={{contact="ghost", friction=0.35}}')
+            keys.append('rock_soil={contact="ghost", friction=0.35}')
     if groups:
         keys += ['rock_material=[{name="grain", density_kg_m3=2600, young_modulus_Pa=0.8e9, poisson_ratio=0.12, friction=0.35, '
                  'restitution=0.5}]', f"rocks=[{', '.join(table[group] for group in groups)}]"]
@@ -62,20 +62,12 @@ def shear(kind, share, seed, soil=None):
     return between_plates(h, edges, BEGINS)
 
 
-def slope(angle):
-    """Of the outer cone."""
-    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
-
-
 def law(constants):
-    """Axial strain, deviatoric stress (Pa), volumetric strain of an element of the soil at deviatoric plastic strains."""
+    """Axial strain, deviatoric stress (Pa), volumetric strain of an element of the soil."""
     young, peak, at, residual, decay, dilation = constants
     ep = np.linspace(0, 0.3, 3001)
     angle = np.where(ep < at, peak - (peak - residual) * (1 - ep / at)**3, residual + (peak - residual) * np.exp(-decay * (ep - at)))
-    alpha, beta = slope(angle), slope(dilation)
-    q = 3 * alpha * PRESSURE / (1 / np.sqrt(3) - alpha)
-    strain = q / young + (1 - np.sqrt(3) * beta) * ep
-    return (np.concatenate(([0], each)) for each in (strain, q, q * (1 - 2 * NU) / young - 3 * np.sqrt(3) * beta * ep))
+    return (np.concatenate(([0], each)) for each in softening_curve(ep, angle, dilation, PRESSURE, young, NU))
 
 
 def fitted(young, q, volumetric):

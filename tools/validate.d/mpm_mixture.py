@@ -16,7 +16,7 @@ import numpy as np
 import harness
 import keeping
 from harness import mean_error, sets, verdict
-from mpm import between_plates, energy_parts, folder, peak_of, run
+from mpm import between_plates, energy_parts, folder, peak_of, rough_spheres_bound, run, softening_curve
 from rigid_sphere import young_of_array
 
 EDGE = 0.0375  # m
@@ -26,19 +26,10 @@ CUBIC, PEAK_STRAIN, DECAY = (1075.64, -407.93, 16.39, 0.32463), 0.022, 50
 PEAK, RESIDUAL = np.radians(28.6), np.radians(18.6)
 
 
-def slope(angle):
-    """Of the outer cone."""
-    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
-
-
 def exact(plastic):
-    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains, the lateral
-    stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic = dlambda/sqrt(3)."""
-    cubic = np.polyval(CUBIC, plastic)
-    angle = np.where(plastic < PEAK_STRAIN, cubic, RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
-    alpha, beta = slope(angle), slope(PSI)
-    q = 3 * alpha * PRESSURE / (1 / np.sqrt(3) - alpha)
-    return q / E + (1 - np.sqrt(3) * beta) * plastic, q, q * (1 - 2 * NU) / E - 3 * np.sqrt(3) * beta * plastic
+    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains."""
+    angle = np.where(plastic < PEAK_STRAIN, np.polyval(CUBIC, plastic), RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
+    return softening_curve(plastic, angle, PSI, PRESSURE, E, NU)
 
 
 def test(name, *options, begins=0.02):
@@ -228,10 +219,7 @@ def elastic_mixtures(cell):
           "0.3 % over that of the soil alone, which has " + " and ".join(f"{stiffness(cell, 0, contact) / E:.3f} ({contact})"
                                                                         for contact in ("ghost", "surface")) + " of its E\n")
     for share, volume in ((20, 0.158), (40, 0.311)):
-        g, k = E / (2 * (1 + NU)), E / (3 * (1 - 2 * NU))
-        bound_k = k + volume / (1 - volume) * (k + 4 / 3 * g)
-        bound_g = g + volume / (1 - volume) * 5 * g * (3 * k + 4 * g) / (6 * (k + 2 * g))
-        bound = 9 * bound_k * bound_g / (3 * bound_k + bound_g) / E
+        bound = rough_spheres_bound(E, NU, volume)
         for contact in ("ghost", "surface"):
             stiff, finest = (stiffness(c, share, contact) / stiffness(c, 0, contact) for c in (cell, FINEST))
             if cell != FINEST:  # halving the cells brings it into the range, or down from above it

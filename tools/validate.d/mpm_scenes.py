@@ -12,8 +12,9 @@ import h5py
 import numpy as np
 
 import harness
-from harness import PROTOCOLS, answer, bars, columns, results, sets, verdict
-from mpm import costs, folder, frames, grain_steps, last_frame, picture, plot_style, run, specimen
+from harness import answer, bars, columns, results, sets, verdict
+from mpm import (
+    costs, folder, frames, front, grain_steps, last_frame, mohr_coulomb, moving_mean, picture, plot_style, rows_in, run, specimen, with_soil)
 
 plt = plot_style()
 
@@ -35,7 +36,7 @@ def footing_run(name, soil, seed, *options):
     h, printed = run(name, "footing.toml", "--case", soil,
                      *sets(f'material.soil.specimens=["{packing(soil, seed)}.h5"]'), *options)
     depth, load = -h["footing.displacement_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
-    return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), grain_steps(printed)
+    return depth[2:-2], moving_mean(load, 5, "valid"), grain_steps(printed)
 
 
 def bearing_factors(soil, seed):
@@ -54,8 +55,7 @@ def footing_figure(curves, factors, name):
             axes.plot(depth, load, color=colour, label=None if k else soil, linewidth=0.6 if k else 1.5)
         for factor, style in zip(factors[soil], ("--", ":")):
             axes.axhline(factor, color=colour, linestyle=style, linewidth=1)
-    axes.set_xlabel("settlement over width")
-    axes.set_ylabel("load over surcharge")
+    axes.set(xlabel="settlement over width", ylabel="load over surcharge")
     axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
     axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
     figure.tight_layout()
@@ -89,7 +89,7 @@ def footing():
 def first_level(depth, load):
     """Where a mean over 0.05 widths first stops rising (Vesic): settlement over width, load; None: it never does."""
     at = np.linspace(depth[0], depth[-1], round((depth[-1] - depth[0]) / 0.0025) + 1)
-    smooth = np.convolve(np.interp(at, depth, load), np.ones(21) / 21, mode="valid")
+    smooth = moving_mean(np.interp(at, depth, load), 21, "valid")
     level = np.flatnonzero(np.diff(smooth) <= 0)
     return (at[10 + level[0]], smooth[level[0]]) if len(level) else None
 
@@ -135,11 +135,8 @@ def print_costs(name, steps):
 
 
 def front_of(frame, apart=1):
-    """Where the deposit ends, m: the first gap of more than so many cells along x."""
     with h5py.File(frame) as file:
-        x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
-    gaps = np.flatnonzero(np.diff(x) > apart * cell)
-    return x[gaps[0]] if len(gaps) else x[-1]
+        return front(file["position_m"][()], float(file["grid_cell_m"][0]), apart)
 
 
 def collapse(name, h, density):
@@ -198,28 +195,30 @@ def column_of_grains(name, *options):
     costs(printed)
 
 
+def forces_on_pipe(name, h):
+    """Of a run: rows on the way down and, once it has begun, aside; upward and sideward force (kN/m), means over 0.05 s; the watched
+    points and their row of the turn."""
+    time, left = h["time_s"], -h["pipe.displacement_x_m"]
+    up, aside = (moving_mean(h[f"pipe.force_{axis}_N"] / 1e3, rows_in(time, 0.05)) for axis in "yx")
+    turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
+    watched = columns(folder / name / "watched.csv")
+    return time <= turn, (time > turn + 0.6) & (left < left.max()), up, aside, watched, np.searchsorted(watched["time_s"], turn)
+
+
 def pipe():
     specimen()
     h, printed = run("pipe", "pipe.toml")
-    time, up, aside = h["time_s"], h["pipe.force_y_N"] / 1e3, h["pipe.force_x_N"] / 1e3
-    depth, left = -h["pipe.displacement_y_m"], -h["pipe.displacement_x_m"]
-    window = max(1, round(0.05 / np.median(np.diff(time))))
-    mean = lambda values: np.convolve(values, np.ones(window) / window, mode="same")
-    up, aside = mean(up), mean(aside)
-    turn = float(time[np.argmax(depth > depth.max() - 1e-9)])
-    down, lateral = time <= turn, (time > turn + 0.6) & (left < left.max())
+    time, depth, left = h["time_s"], -h["pipe.displacement_y_m"], -h["pipe.displacement_x_m"]
+    down, lateral, up, aside, watched, at = forces_on_pipe("pipe", h)
     print("Rough pipe, 1 m in diameter, pushed 0.8 m into dense sand of 9 x 2.5 m (54 x 15 cells, one point each) and 0.7 m\n"
           "to the left; forces on it per metre (means over 0.05 s); published: 196 x 50 cells, speeds not printed\n\n"
           "depth (m)        " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nvertical (kN)    " + "".join(f"{np.interp(d, depth[down], up[down]):<8.0f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nway aside (m)    " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.71, 0.1)))
-    moved = time > turn
     for name, force in (("vertical (kN)", up), ("horizontal (kN)", aside)):
-        print(f"{name:<17}" + "".join(f"{np.interp(d, left[moved], force[moved]):<8.0f}" for d in np.arange(0.1, 0.71, 0.1)))
+        print(f"{name:<17}" + "".join(f"{np.interp(d, left[~down], force[~down]):<8.0f}" for d in np.arange(0.1, 0.71, 0.1)))
     print()
     pipe_bars(up[down].max(), up[lateral].mean(), aside[lateral].mean())
-    watched = columns(folder / "pipe/watched.csv")
-    at = np.searchsorted(watched["time_s"], turn)
     print("\npoint  eps_q, rotation (degrees) at the turn    at the end         published")
     for k, (name, published) in enumerate((("D", "0.5, 10 to 15; 2.6, 58"), ("E", "-"), ("F", "1.2, 30; 1.4, 30"))):
         q, turned = watched[f"{k}.eps_q"], watched[f"{k}.rotation_deg"]
@@ -229,9 +228,8 @@ def pipe():
     figure, axes = plt.subplots(figsize=(5.5, 3.5))
     axes.plot(time, up, label="vertical")
     axes.plot(time, aside, label="horizontal")
-    axes.axvline(turn, color="0.5", linestyle=":", linewidth=1)
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("force of the soil on the pipe (kN/m)")
+    axes.axvline(time[down][-1], color="0.5", linestyle=":", linewidth=1)
+    axes.set(xlabel="time (s)", ylabel="force of the soil on the pipe (kN/m)")
     axes.legend()
     figure.tight_layout()
     figure.savefig(results / "mpm_pipe_forces.png")
@@ -265,28 +263,11 @@ def pipe_bars(*found):
 def pipe_in_soil(angle, across, *options):
     """The scene's mechanics without its specimen: forces on the pipe in a Mohr-Coulomb soil (kN/m; largest down, means on the way
     aside) and rotations (degrees) behind and before it, at the turn and at the end."""
-    text = (PROTOCOLS / "mpm/pipe.toml").read_text().split("\n[case.")[0]
-    begin, end = text.index("[[material]]"), text.index("[[region]]")
-    scene = folder / f"pipe_soil_{angle:g}_{across}.toml"
-    scene.write_text((text[:begin] + f"""[[material]]
-name = "soil"
-kind = "mohr_coulomb"
-density_kg_m3 = 2000
-young_modulus_Pa = 20e6
-friction_angle_deg = {angle}
-cohesion_Pa = 100
-
-""" + text[end:]).replace('"dense"', '"soil"'))
-    h, _ = run(scene.stem, scene.resolve(), "-j", "1", *sets(f"grid.cell_m={1 / across!r}", "region.0.upper_m=[9, 2.5]"))
-    time, left = h["time_s"], -h["pipe.displacement_x_m"]
-    window = np.ones(max(1, round(0.05 / np.median(np.diff(time)))))
-    up, aside = (np.convolve(h[f"pipe.force_{axis}_N"] / 1e3, window / len(window), mode="same") for axis in "yx")
-    turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
-    lateral = (time > turn + 0.6) & (left < left.max())
-    watched = columns(folder / scene.stem / "watched.csv")
-    at = np.searchsorted(watched["time_s"], turn)
+    scene = with_soil(f"pipe_soil_{angle:g}_{across}", "pipe.toml", mohr_coulomb(angle, cohesion=100))
+    h, _ = run(scene.stem, scene, "-j", "1", *sets(f"grid.cell_m={1 / across!r}", "region.0.upper_m=[9, 2.5]"))
+    down, lateral, up, aside, watched, at = forces_on_pipe(scene.stem, h)
     turned = [(abs(watched[f"{k}.rotation_deg"][at]), abs(watched[f"{k}.rotation_deg"][-1])) for k in (2, 0)]
-    return {"forces": (up[time <= turn].max(), up[lateral].mean(), aside[lateral].mean()), "turned": turned}
+    return {"forces": (up[down].max(), up[lateral].mean(), aside[lateral].mean()), "turned": turned}
 
 
 def pipe_soil():

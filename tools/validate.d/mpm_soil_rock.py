@@ -15,7 +15,7 @@ import numpy as np
 import harness
 import keeping
 from harness import sets, verdict
-from mpm import between_plates, energy_parts, last_frame, run
+from mpm import between_plates, energy_parts, last_frame, rough_spheres_bound, run
 
 EDGES, BEGINS, CELL = (0.075, 0.075, 0.15), 0.02, 5  # m, s, mm
 SOIL = {200: (3.0e6, 471), 400: (4.8e6, 871), 800: (8.5e6, 1671)}  # Pa, kPa: E, and q at which the soil alone yields
@@ -27,14 +27,6 @@ SEEDS = {200: (1, 2, 3), 400: (1, 2, 3), 800: (1,)}
 GHOSTS = sets('rock_soil={contact="ghost", friction=0.3, porosity=0.35, young_modulus_Pa=1e8}')
 pressures = [int(word) for word in harness.words] or list(SOIL)
 found, open_energy = {}, {}
-
-
-def bound(young, share):
-    """Lower bound of Hashin and Shtrikman on E over that of the soil, rough rigid spheres."""
-    g, k = young / (2 * (1 + NU)), young / (3 * (1 - 2 * NU))
-    bulk = k + share / (1 - share) * (k + 4 / 3 * g)
-    shear = g + share / (1 - share) * 5 * g * (3 * k + 4 * g) / (6 * (k + 2 * g))
-    return 9 * bulk * shear / (3 * bulk + shear) / young
 
 
 def tested(size, pressure, seed, ghosts=False, share=None):
@@ -90,10 +82,10 @@ def row(pressure, size, contact, runs):
     open_energy[pressure, size, contact] = max(unclosed), max(gained)
     print(f"{pressure:<5} {size:<10} {contact:<8} {len(runs):<3}" + " ".join(f"{x / 1e3:7.0f}" for x in at.mean(axis=0)) +
           f"   {whole(error(at)[-1] / 1e3):<6} {100 * volumetric.mean():<15.2f} "
-          f"{stiff.mean():.2f} ({bound(SOIL[pressure][0], SHARE[size]):.2f}){'':<17}{100 * lost.mean():5.1f} {100 * gained.max():5.1f} "
+          f"{stiff.mean():.2f} ({rough_spheres_bound(SOIL[pressure][0], NU, SHARE[size]):.2f}){'':<17}{100 * lost.mean():5.1f} {100 * gained.max():5.1f} "
           f"{100 * unclosed.max():5.1f}{'':<15}" + " ".join(f"{x:5.0f}" for x in parts[:, 0].mean(axis=0)) + f"{'':<13}{cost.mean():.2f}",
           flush=True)
-    return at[:, -1] / 1e3, peak, stiff / bound(SOIL[pressure][0], SHARE[size]), parts
+    return at[:, -1] / 1e3, peak, stiff / rough_spheres_bound(SOIL[pressure][0], NU, SHARE[size]), parts
 
 
 def alone(shape):

@@ -137,9 +137,7 @@ def draw(curve, path):
     axes.axhline(1e-3, color="0.6", lw=0.8, ls="--")
     axes.annotate("Qu et al. at 0.738: 0.5", (0.3, 0.56), color="0.4", fontsize=8)
     axes.annotate("Qu et al. at 0.371 and 0.282: below 1e-3", (0.46, 6.5e-4), color="0.4", fontsize=8)
-    axes.set_yscale("log")
-    axes.set_xlabel("porosity")
-    axes.set_ylabel("tr(Reynolds stress) / tr(contact stress)")
+    axes.set(yscale="log", xlabel="porosity", ylabel="tr(Reynolds stress) / tr(contact stress)")
     axes.legend(frameon=False)
     figure.savefig(path, bbox_inches="tight")
 
