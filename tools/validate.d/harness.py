@@ -71,28 +71,32 @@ def write(path, text):
 
 
 def once(out, *command, make=None, resume=False, codes=(0,)):
-    """OUT of `rvelab COMMAND -o OUT`, made unless it is there, whole, by the same command of the same version. make: a function
-    that makes it instead; resume: what a run that was stopped left goes on; codes: of a run that is whole, None: any that leaves OUT."""
+    """OUT of `rvelab COMMAND -o OUT`, made unless it is there, whole, by the same command and files .toml of the same version.
+    make: a function that makes it instead; resume: what a run that was stopped left is continued; codes: of a run that is whole,
+    None: any that leaves OUT."""
     out = pathlib.Path(out)
     mark = out.with_name(out.name + ".whole")
-    asked = "\n".join([version(), *map(str, command)])
+    texts = [word.read_text() for word in command if isinstance(word, pathlib.Path) and word.suffix == ".toml"]
+    asked = "\n".join([version(), *map(str, command), *texts])
 
-    def there():  # a family is a file for each depth
-        return out.exists() or any(out.parent.glob(f"{out.stem}_*Pa.h5"))
+    def family():  # a file for each depth
+        return list(out.parent.glob(f"{out.stem}_*Pa.h5"))
 
-    if mark.exists() and mark.read_text() == asked and there():
+    if mark.exists() and mark.read_text() == asked and (out.exists() or family()):
         return out
     begun = out.with_name(out.name + ".begun")
     goes_on = resume and begun.exists() and begun.read_text() == asked
     mark.unlink(missing_ok=True)
     if not goes_on:
-        shutil.rmtree(out) if out.is_dir() else out.unlink(missing_ok=True)
+        shutil.rmtree(out, ignore_errors=True)
+        for left in (out, out.with_name(out.name + ".journal"), *family()):
+            left.unlink(missing_ok=True)
         write(begun, asked)
     if make:
         make(out)
     else:
         done = run(program, *command, "-o", out, *(["--resume"] if resume else []), codes=codes)
-        if not there():
+        if not (out.exists() or family()):
             sys.exit(f"{out}: {done.stderr.strip()[-500:]}")
     write(mark, asked)
     begun.unlink(missing_ok=True)

@@ -9,7 +9,6 @@ biaxial test of its specimen (stress and volume). `biaxial`: compression in the 
 case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and gathering. Runs that are whole
 in FOLDER are used again, and those that were stopped go on. Other scenes: mpm_scenes.py."""
 
-import hashlib
 import resource
 import shutil
 import sys
@@ -35,7 +34,7 @@ def run(name, scene, *options):
         with printed.open("a" if goes_on else "w") as file:
             file.write(harness.run(mpm, *(("--resume", place, "-q") if goes_on else (*command, "-o", place))).stdout)
 
-    once(work / name, *command, hashlib.sha256(scene.read_bytes()).hexdigest(), make=make, resume=True)
+    once(work / name, *command, make=make, resume=True)
     return columns(work / name / "history.csv"), printed.read_text()
 
 

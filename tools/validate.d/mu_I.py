@@ -90,7 +90,7 @@ def tested(name, protocol, specimen):
     """Records of a test."""
     path = work / f"{name}.toml"
     path.write_text(protocol)
-    return once(work / f"{name}.h5", "run", path, protocol, "--specimen", specimen)
+    return once(work / f"{name}.h5", "run", path, "--specimen", specimen)
 
 
 def flow(name, specimen, plane, inertial, strain, normal):

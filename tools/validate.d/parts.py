@@ -16,6 +16,7 @@ class Part:
     by_name: bool = False     # hours: only by its name or by --stale
     times: bool = False       # compares times: on a machine without other work
     kept: bool = True         # in results
+    without_rvelab: bool = False  # its table is of no version
 
     def run(self):
         return self.command or f"check {self.name} $work/{self.name} {self.words}"
@@ -106,7 +107,7 @@ PARTS = [
          packages="yade make xz-utils", times=True),
     Part("yade_increments", 60, "error against processor time of an increment, from states of YADE's packings", packages="yade",
          targets="rvelab-increments", needs="../shared/reference/yade/packings", times=True),
-    Part("fit_schemes", 10, "schemes of inverse calibration on a synthetic material", packages="python3-scipy"),
+    Part("fit_schemes", 10, "schemes of inverse calibration on a synthetic material", packages="python3-scipy", without_rvelab=True),
     Part("fit", 60, "hidden parameters of real tests"),
     Part("fit_triaxial", 10, "GrainLearning's triaxial test on its packing, with its parameters and fitted"),
     Part("scatter", 20, "how scatter falls with specimens and grains"),
@@ -116,7 +117,7 @@ PARTS = [
     Part("scaling", 10, "speed on threads", "tools/bench/scaling $program && cat tools/bench/scaling.md", times=True, kept=False),
     Part("features", 10, "speed of features", "tools/bench/features $program", times=True, kept=False),
     Part("capillary", 1, "laws of liquid bridges against the Young-Laplace equation",
-         words="compare tests/data/interaction/young_laplace.csv"),
+         words="compare tests/data/interaction/young_laplace.csv", without_rvelab=True),
     Part("cemented", 5, "cemented grains, ensembles of five: strength, envelopes, breaking beside published statements"),
     Part("moist", 10, "moist grains, ensembles of five: strength against suction, collapse on wetting"),
     Part("new_law", 8, "one more law of an interaction, in a copy of the tree: files to touch, and its tests"),

@@ -88,7 +88,7 @@ def allowed(rule, expected, error):
 
 @bars
 def steady_row(case, quantity, mean, own, expected, se):
-    """A row of the table and its verdict; where an exact state is not unique it is shown, beside 5 %."""
+    """A row of the table and its verdict; fcc282, whose steady state is not unique, is shown beside 5 %."""
     rule = CASES[case][1]
     bound = 0.05 * abs(expected) if rule == "shown" else allowed(rule, expected, np.hypot(se, own))
     off = abs(mean - expected)
