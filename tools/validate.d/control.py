@@ -54,7 +54,7 @@ def again(name, file, gradients, substeps, grains):
         with h5py.File(state, "w") as single:
             for key in file[f"snapshots/{k:06d}"]:
                 file.copy(f"snapshots/{k:06d}/{key}", single)
-            single.attrs["format"], single.attrs["format_version"] = "rvelab specimen", file.attrs["format_version"]
+            single.attrs["format"], single.attrs["format_version"] = np.bytes_("rvelab specimen"), file.attrs["format_version"]
         # Made by another program, it has no checksum.
         rvelab("seal", state, "-o", sealed, "--force")
         run(deformations(toml, [gradients[k + 1] @ np.linalg.inv(gradients[k])]), "--specimen", sealed, "-o", out)
