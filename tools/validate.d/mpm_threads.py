@@ -66,8 +66,8 @@ def counted():
     listed = harness.run("callgrind_annotate", "--inclusive=yes", "--threshold=100", out).stdout.splitlines()
 
     def of(name):
-        return sum(int(line.split("(")[0].replace(",", "")) for line in listed if f"mpm::{name}(" in line)
-    return of("Solver<2>::step") + of("Solver<2>::stable_step"), of("Workers::share")
+        return sum(int(line.split("(")[0].replace(",", "")) for line in listed if f"{name}(" in line)
+    return of("mpm::Solver<2>::step") + of("mpm::Solver<2>::stable_step"), of("rvelab::Workers::share")
 
 
 def main():
