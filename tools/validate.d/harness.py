@@ -250,11 +250,11 @@ def given(found):
     entry(found)
 
 
-def verdict(what, found, asked, met, explained=False, cause="", width=76):
+def verdict(what, found, asked, met, explained=False, cause="", width=76, reason=""):
     """The same of what was found and asked, as texts; main() counts these at the end."""
     global totals
     totals = True
-    return row(f"{what:<{width}} {found:<22} {asked:<24}", met, explained, cause, what=what)
+    return row(f"{what:<{width}} {found:<22} {asked:<24}", met, explained, cause, what=what, reason=reason)
 
 
 def bars(judge):

@@ -24,17 +24,21 @@ folder = work
 def run(name, scene, *options):
     """Runs a scene into WORK/name unless it is there and whole, or goes on with one that was stopped; its history by columns, and what
     it printed."""
-    printed, scene = work / f"{name}.txt", PROTOCOLS / "mpm" / scene
+    printed, warned, scene = work / f"{name}.txt", work / f"{name}.warnings", PROTOCOLS / "mpm" / scene
     command = [scene, "--specimens", work, "-q", *options]
 
-    def make(place):
-        goes_on = (place / "checkpoint.h5").exists()
+    def make(out):
+        goes_on = (out / "checkpoint.h5").exists()
         if not goes_on:
-            shutil.rmtree(place, ignore_errors=True)
-        with printed.open("a" if goes_on else "w") as file:
-            file.write(harness.run(mpm, *(("--resume", place, "-q") if goes_on else (*command, "-o", place))).stdout)
+            shutil.rmtree(out, ignore_errors=True)
+        done = harness.run(mpm, *(("--resume", out, "-q") if goes_on else (*command, "-o", out)))
+        for path, text in ((printed, done.stdout), (warned, done.stderr)):
+            with path.open("a" if goes_on else "w") as file:
+                file.write(text)
 
     once(work / name, *command, make=make, resume=True)
+    if warned.read_text():
+        print(warned.read_text(), end="", flush=True)
     return columns(work / name / "history.csv"), printed.read_text()
 
 
