@@ -1,5 +1,5 @@
-"""tools/validate: verdicts, runs that were cut off, what is out of date, and that a table is kept only when it is whole.
-Argument: a folder to work in. A shell script stands for rvelab."""
+"""tools/validate: verdicts, runs that were cut off, what is out of date, and that a table is kept only when it is
+whole. Argument: a folder to work in. A shell script stands for rvelab."""
 import importlib.machinery
 import importlib.util
 import json
@@ -63,7 +63,8 @@ class Bench(unittest.TestCase):
 
     def run_check(self, *words: object, entries: bool = False) -> subprocess.CompletedProcess:
         environment = {**os.environ, "PYTHONPATH": str(checks), **({"RVELAB_ENTRIES": "1"} if entries else {})}
-        return subprocess.run([sys.executable, "-B", self.check, self.program, work / "w", work / "r", *map(str, words)], env=environment,
+        return subprocess.run([sys.executable, "-B", self.check, self.program, work / "w", work / "r",
+                               *map(str, words)], env=environment,
                               capture_output=True, text=True)
 
     def runs(self) -> int:
@@ -182,20 +183,24 @@ class Stale(unittest.TestCase):
         (work / "failed").mkdir(parents=True)
 
     def keep(self, name: str, version: str, **more: object) -> None:
-        keeping.keep(name, {"command": name, "program": version, "compiler": "", "cores": 1, "processor": "", "entries": [], **more}, work)
+        keeping.keep(name, {"command": name, "program": version, "compiler": "", "cores": 1, "processor": "",
+                            "entries": [], **more}, work)
 
     def stale(self, *parts: Part) -> list[tuple[str, str]]:
         return [(part.name, why) for part, why, _ in keeping.out_of_date(parts, "rvelab 2.0.0", work / "failed", work)]
 
     def test_the_oldest_come_first_and_the_cheapest_among_equals(self) -> None:
         parts = [Part(name, minutes, "") for name, minutes in
-                 (("hours", 90), ("minutes", 5), ("old", 50), ("present", 1), ("never", 70), ("failed", 1), ("speed", 1))]
-        for name, version in (("hours", "1.10.0"), ("minutes", "1.10.0"), ("old", "1.9.0"), ("present", "2.0.0"), ("failed", "2.0.0")):
+                 (("hours", 90), ("minutes", 5), ("old", 50), ("present", 1), ("never", 70), ("failed", 1),
+                  ("speed", 1))]
+        for name, version in (("hours", "1.10.0"), ("minutes", "1.10.0"), ("old", "1.9.0"), ("present", "2.0.0"),
+                              ("failed", "2.0.0")):
             self.keep(name, f"rvelab {version}")
         (work / "failed/failed.txt").touch()
         self.keep("minutes", "rvelab 1.10.0", core_minutes=95)
         parts[-1] = Part("speed", 1, "", kept=False)
-        self.assertEqual(self.stale(*parts), [("never", "never kept"), ("old", "by rvelab 1.9.0"), ("hours", "by rvelab 1.10.0"),
+        self.assertEqual(self.stale(*parts), [("never", "never kept"), ("old", "by rvelab 1.9.0"),
+                                              ("hours", "by rvelab 1.10.0"),
                                               ("minutes", "by rvelab 1.10.0"), ("failed", "failed")])
 
     def test_what_is_not_made_again_says_so_and_is_not_stale_for_that_version(self) -> None:

@@ -51,7 +51,8 @@ def main():
           "| Roscoe Arthur Coulomb")
     for strain in STRAINS:
         loading = [answer("probe", test(n, strain), "--bands") for n in numbers]
-        averaged = [answer("probe", test(n, strain), "--bands", "--method", "dynamic", "--size", "1e-3") for n in numbers]
+        averaged = [answer("probe", test(n, strain), "--bands", "--method", "dynamic", "--size", "1e-3")
+                    for n in numbers]
         from_start = mean_error([least_determinant(each["stiffness_Pa"]) / start[n] for n, each in zip(numbers, loading)])
 
         def of(answers, key):

@@ -96,7 +96,8 @@ def axial_stress(printed):
 def alone(strain):
     """The same test of the cell alone. Strains of a protocol are of the first height, as the host's displacement is."""
     output = once(folder / "alone.h5", "run", "biaxial", "--specimen", folder / "S.h5",
-                  *sets(f"test.pressure_Pa={PRESSURE}", f"stage.compression.to_strain={strain}", f"stage.compression.record_every={STEP}"))
+                  *sets(f"test.pressure_Pa={PRESSURE}", f"stage.compression.to_strain={strain}",
+                        f"stage.compression.record_every={STEP}"))
     found = records(output, "strain", "stress_Pa")
     return found["strain"], -found["stress_Pa"][:, 1, 1]
 

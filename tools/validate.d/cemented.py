@@ -41,11 +41,14 @@ def run(test, specimen, pressure, strength, young_modulus=50e6):
         protocol = PROTOCOLS / f"{test['protocol']}.toml"
         cement = [f"stage.cement.tensile_strength_Pa={strength:g}", f"stage.cement.cohesion_Pa={strength:g}",
                   f"stage.cement.young_modulus_Pa={young_modulus:g}"]
-    out = once(work / f"{specimen.stem}_{pressure:g}_{strength:g}{stiff}_records.h5", "run", protocol, "--specimen", specimen,
+    out = once(work / f"{specimen.stem}_{pressure:g}_{strength:g}{stiff}_records.h5", "run", protocol, "--specimen",
+               specimen,
                *sets(f"test.pressure_Pa={pressure:g}", *test["set"], *cement), codes=None)
-    read = records(out, "strain", "stress_Pa", "void_ratio", "bonds", "bonds_broken_in_tension", "bonds_broken_in_shear", last=True)
+    read = records(out, "strain", "stress_Pa", "void_ratio", "bonds", "bonds_broken_in_tension",
+                   "bonds_broken_in_shear", last=True)
     stress, void_ratio, axis = -read.pop("stress_Pa"), read.pop("void_ratio"), test["axis"]
-    return {**read, "sigma_1": stress[:, axis, axis], "sigma_3": np.mean([stress[:, k, k] for k in range(axis)], axis=0),
+    return {**read, "sigma_1": stress[:, axis, axis], "sigma_3": np.mean([stress[:, k, k] for k in range(axis)],
+                                                                         axis=0),
             "eps_v": (void_ratio - void_ratio[0]) / (1 + void_ratio[0])}
 
 
@@ -89,7 +92,8 @@ def family(test):
               f"{in_words(column['brittleness'], 1, 2):15s}  {in_words(column['dilation_strain'], 100, 2):22s}  "
               f"{in_words(column['dilation'], 1, 2):14s}  {in_words(column['at_peak'], 100):17s}  "
               f"{in_words(column['tension'], 100)}, {in_words(column['shear'], 100)}")
-    envelopes = {s: [envelope_of([rows[s, p][k] for p in test["pressures"]]) for k in range(COUNT)] for s in test["strengths"]}
+    envelopes = {s: [envelope_of([rows[s, p][k] for p in test["pressures"]]) for k in range(COUNT)]
+                 for s in test["strengths"]}
     print("\nstrength, kPa  c, kPa           phi, degrees     c over strength")
     for s, each in envelopes.items():
         c, phi = zip(*each)
@@ -98,7 +102,8 @@ def family(test):
     # The strongest cement at the ratios of pressure to strength of the weakest.
     weakest, strongest = test["strengths"][1], test["strengths"][-1]
     high = [p * strongest / weakest for p in test["pressures"]]
-    rows.update({(strongest, p): [measures(run(test, each, p, strongest)) for each in files] for p in high if (strongest, p) not in rows})
+    rows.update({(strongest, p): [measures(run(test, each, p, strongest)) for each in files] for p in high
+                 if (strongest, p) not in rows})
     similar = [envelope_of([rows[strongest, p][k] for p in high]) for k in range(COUNT)]
     # And as stiff as it should be for its strength.
     stiff = [measures(run(test, each, test["pressures"][0], strongest, 200e6))["strain"] for each in files]
@@ -108,7 +113,8 @@ def family(test):
 def along_envelope(rows, strength):
     """phi between neighbouring pressures, degrees, in words."""
     pressures = sorted(p for s, p in rows if s == strength)
-    phi = [np.mean([envelope_of([rows[strength, a][k], rows[strength, b][k]])[1] for k in range(COUNT)]) for a, b in zip(pressures, pressures[1:])]
+    phi = [np.mean([envelope_of([rows[strength, a][k], rows[strength, b][k]])[1] for k in range(COUNT)])
+           for a, b in zip(pressures, pressures[1:])]
     return ", ".join(f"{each:.1f}" for each in phi)
 
 
@@ -128,15 +134,18 @@ def judge(name, test, rows, envelopes, similar, stiff, count=COUNT):
              f"{strongest / weakest:.0f} times as high, of the same part of their strength as for {weakest / 1e3:.0f} kPa, phi is {scaled:.1f}, "
              f"{gap:+.1f} from that of {weakest / 1e3:.0f} kPa")
     curved = (f"the envelope is curved (Collins and Sitar): between neighbouring pressures, from {low / 1e3:.0f} kPa on twice as high each, phi is "
-              + "; ".join(f"{along_envelope(rows, s)} with bonds of {s / 1e3:.0f} kPa" for s in strengths[1:]) + f"; {along_envelope(rows, 0)} without "
+              + "; ".join(f"{along_envelope(rows, s)} with bonds of {s / 1e3:.0f} kPa"
+                          for s in strengths[1:]) + f"; {along_envelope(rows, 0)} without "
               f"cement. At pressures {strongest / weakest:.0f} times as high, of the same part of their strength as for {weakest / 1e3:.0f} kPa, phi is {scaled:.1f}, "
               f"{gap:+.1f} from that of {weakest / 1e3:.0f} kPa, where 3 are allowed to this cause")
     change = angle[1:].mean(axis=1) - angle[0].mean()
     error = max(mean_error(angle[k] - angle[0])[1] for k in range(1, len(strengths)))
     verdict(f"{name}: phi beside that without cement (Clough: similar), largest change, degrees",
-            f"{change[np.argmax(abs(change))]:+.1f} +- {error:.1f}", "within 5", abs(change).max() <= 5, abs(gap) <= 3, cause, reason=curved)
+            f"{change[np.argmax(abs(change))]:+.1f} +- {error:.1f}", "within 5", abs(change).max() <= 5, abs(gap) <= 3,
+            cause, reason=curved)
     spread = np.ptp(angle[1:].mean(axis=1))
-    verdict(f"{name}: phi between bond strengths (Consoli: independent), degrees", f"{spread:.1f}", "within 3", spread <= 3, abs(gap) <= 3, cause, reason=curved)
+    verdict(f"{name}: phi between bond strengths (Consoli: independent), degrees", f"{spread:.1f}", "within 3",
+            spread <= 3, abs(gap) <= 3, cause, reason=curved)
     mean = lambda what, s, p: np.mean([row[what] for row in rows[s, p]])
     brittle = [mean("brittleness", s, low) for s in strengths]
     verdict(f"{name}: softening after the peak grows with strength (Wang and Leung; Jiang)",

@@ -32,8 +32,10 @@ friction = 0.5
 
 
 def test(kind, seed):
-    specimen = packed(work / "discs.toml", f"{kind}_{seed}", f"pack.seed={seed}", f"preparation.friction={dict(dense=0.0, loose=0.9)[kind]}")
-    return means(once(work / f"R_{kind}_{seed}.h5", "run", "simple_shear_drained", "--specimen", specimen, *sets("test.pressure_Pa=10e3"),
+    specimen = packed(work / "discs.toml", f"{kind}_{seed}", f"pack.seed={seed}",
+                      f"preparation.friction={dict(dense=0.0, loose=0.9)[kind]}")
+    return means(once(work / f"R_{kind}_{seed}.h5", "run", "simple_shear_drained", "--specimen", specimen,
+                      *sets("test.pressure_Pa=10e3"),
                       resume=True))
 
 

@@ -78,7 +78,8 @@ def journal_of():
 def pool_of(source, name):
     """A pool file of one RVE, by the Python package."""
     run(sys.executable, "-c", f"import rvelab; rvelab.Rve('{source}').save('{name}')", cwd=work,
-        env={**os.environ, "PYTHONPATH": str(harness.ROOT / "tools/python"), "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
+        env={**os.environ, "PYTHONPATH": str(harness.ROOT / "tools/python"),
+             "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
     return work / name
 
 
@@ -86,8 +87,10 @@ def main():
     number, good = int(harness.words[0]) if harness.words else 1000, True
     (work / "small.toml").write_text(TEST)
     (work / "cemented.toml").write_text(CEMENTED)
-    for words in (["pack", "pack_dense", "-o", "S.h5", *sets("pack.number=64")], ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
-                  ["run", "cemented.toml", "--specimen", "S.h5", "-o", "C.h5"], ["export", "S.h5", "--format", "csv", "-o", "E"]):
+    for words in (["pack", "pack_dense", "-o", "S.h5", *sets("pack.number=64")],
+                  ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
+                  ["run", "cemented.toml", "--specimen", "S.h5", "-o", "C.h5"],
+                  ["export", "S.h5", "--format", "csv", "-o", "E"]):
         rvelab(*words, "--force", cwd=work)
     damaged = work / "damaged.h5"
     inspect = [program, "inspect", damaged, "--json"]
@@ -102,7 +105,8 @@ def main():
     for path in tables:
         copy = path.with_name("damaged." + path.name)
         inputs = [copy if each == path else each for each in tables]
-        good &= flip([program, "import", *inputs[:3], "--material", inputs[3], "-o", work / "E.h5", "--force", "--json"], path, number // 4,
+        good &= flip([program, "import", *inputs[:3], "--material", inputs[3], "-o", work / "E.h5", "--force",
+                      "--json"], path, number // 4,
                      False, copy)
     return not good
 

@@ -42,11 +42,12 @@ def bar(holds, failure):
 
 
 def tested(protocol, name, count, packing, settings, read):
-    """read(record file) of a test on each of so many specimens, on as many threads as there are cores. name: with the seed, a
-    specimen's; packing: its settings without the seed."""
+    """read(record file) of a test on each of so many specimens, on as many threads as there are cores. name: with the
+    seed, a specimen's; packing: its settings without the seed."""
     def one(seed):
         specimen = packed("pack_bedded", f"{name}_{seed}", *packing, f"pack.seed={seed}", options=("--threads", 1))
-        return read(once(work / f"{name}_{seed}_{protocol}.h5", "run", protocol, "--specimen", specimen, *sets(PRESSURE, *settings)))
+        return read(once(work / f"{name}_{seed}_{protocol}.h5", "run", protocol, "--specimen", specimen,
+                         *sets(PRESSURE, *settings)))
     return list(in_turn(one, range(1, count + 1), os.cpu_count()))
 
 
@@ -79,7 +80,8 @@ def print_row(title, values, unit=" degrees", digits=2):
 
 
 def packing_of(aspect, angle, spread):
-    return SIZES + [f"grains.smallest_aspect_ratio={aspect}", f"grains.largest_aspect_ratio={aspect}", f"pack.number={NUMBER}",
+    return SIZES + [f"grains.smallest_aspect_ratio={aspect}", f"grains.largest_aspect_ratio={aspect}",
+                    f"pack.number={NUMBER}",
                     f"grains.bedding_angle_deg={angle}", f"grains.bedding_spread_deg={spread}"]
 
 
@@ -104,12 +106,14 @@ def stiffness_axes(count):
                 stiffness = file["probes/stiffness_Pa"][-1]
             # Of an axis that is known up to half a turn.
             return (axis_of(stiffness) - angle + 90) % 180 - 90, stiffness[0, 0] / stiffness[1, 1]
-        axes, ratios = zip(*tested("probe", f"axis_{angle}", count, [f"grains.bedding_angle_deg={angle}"], ["stage.probe.method=linear"], probed))
+        axes, ratios = zip(*tested("probe", f"axis_{angle}", count, [f"grains.bedding_angle_deg={angle}"],
+                                   ["stage.probe.method=linear"], probed))
         mean, _, error = print_row(f"bedding {angle:2d}: axis less bedding", axes)
         if angle == 0:
             print_row("bedding  0: C11/C22", ratios, "")
         bar(abs(mean) <= 3, f"the mean axis is {mean:.1f} degrees off the bedding of {angle}")
-        bar(abs(mean) <= 2 * error, f"the mean axis is {abs(mean) / error:.1f} standard errors off the bedding of {angle}")
+        bar(abs(mean) <= 2 * error,
+            f"the mean axis is {abs(mean) / error:.1f} standard errors off the bedding of {angle}")
 
 
 def biaxial(strain):
@@ -119,7 +123,8 @@ def biaxial(strain):
 def against_aspect(count):
     print(f"Friction angle of random specimens against the aspect ratio (biaxial to {ASPECT_STRAIN:g}, {NUMBER} "
           "grains)")
-    means = [print_angles(f"aspect ratio {aspect}", tested("biaxial", f"aspect_{aspect}", count, packing_of(aspect, 0, 90),
+    means = [print_angles(f"aspect ratio {aspect}", tested("biaxial", f"aspect_{aspect}", count,
+                                                           packing_of(aspect, 0, 90),
                                                            biaxial(ASPECT_STRAIN), angles)) for aspect in ASPECTS]
     for title, (disc, _, *slender) in zip(("peak", "last third"), zip(*means)):
         rise, rise_errors = errors_apart(slender[0], disc)
@@ -137,8 +142,10 @@ def against_aspect(count):
 def against_bedding(count):
     print(f"Friction angle against the bedding angle, compression along y (aspect ratio 0.6, spread 30, biaxial to "
           f"{BEDDING_STRAIN:g}, {NUMBER} grains)")
-    table = [(angle, *print_angles(f"bedding {angle:2d}", tested("biaxial", f"bedding_{angle}", count, packing_of(0.6, angle, 30),
-                                                                biaxial(BEDDING_STRAIN), angles))) for angle in BEDDINGS]
+    table = [(angle, *print_angles(f"bedding {angle:2d}", tested("biaxial", f"bedding_{angle}", count,
+                                                                 packing_of(0.6, angle, 30),
+                                                                biaxial(BEDDING_STRAIN), angles)))
+                                                                for angle in BEDDINGS]
     draw(table)
     more, errors = errors_apart(table[0][1], table[-1][1])
     print(f"  across the bed less along it: {more:.2f} degrees, {errors:.1f} standard errors")
@@ -148,8 +155,10 @@ def against_bedding(count):
 def shear(count):
     print(f"Friction angle in drained simple shear v_x(y), bedding along and across the shear (aspect ratio 0.6, to "
           f"{SHEAR_STRAIN:g}, {NUMBER} grains)")
-    along, across = (print_angles(title, tested("simple_shear_drained", f"bedding_{angle}", count, packing_of(0.6, angle, 30),
-                                                [f"stage.shear.to_strain={SHEAR_STRAIN}", "stage.shear.record_every=0.004"], angles))
+    along, across = (print_angles(title, tested("simple_shear_drained", f"bedding_{angle}", count,
+                                                packing_of(0.6, angle, 30),
+                                                [f"stage.shear.to_strain={SHEAR_STRAIN}",
+                                                 "stage.shear.record_every=0.004"], angles))
                      for title, angle in (("along", 0), ("across", 90)))
     peaks, peak_errors = errors_apart(across[0], along[0])
     ends, end_errors = errors_apart(across[1], along[1])

@@ -19,7 +19,8 @@ TEST = sets("stage.compression.to_strain=0.04", "test.pressure_Pa=20e3")
 
 def measured(specimens, truth):
     """Mean and standard error of the targets with the hidden parameters."""
-    summary = answer("run", "biaxial", "--specimen", *specimens, *TEST, *sets(*(f"{key}={value}" for key, value in truth.items())))["summary"]
+    summary = answer("run", "biaxial", "--specimen", *specimens, *TEST,
+                     *sets(*(f"{key}={value}" for key, value in truth.items())))["summary"]
     rows = {row["measure"]: row for row in summary}
     return {name: (rows[name]["mean"], 2.262 / 1.96 * rows[name]["standard_error"]) for name in TARGETS}
 

@@ -42,7 +42,8 @@ def imported():
         f"density_kg_m3 = 2650\nyoung_modulus_Pa = {E}\nstiffness_ratio = {ratio}\nfriction = {math.tan(math.radians(mu)):.4f}\n"
         f"rolling_stiffness = {rolling}\nrolling_friction = {eta}\n")
     file = work / "S.h5"
-    rvelab("import", work / "packing.csv", "--cell", ",".join(cell), "--material", work / "material.toml", "-o", file, "--force")
+    rvelab("import", work / "packing.csv", "--cell", ",".join(cell), "--material", work / "material.toml", "-o", file,
+           "--force")
     return file
 
 
@@ -80,7 +81,8 @@ def main():
         row(f"{name:22s} {E / 1e6:7.0f}  {ratio:5.3f}  {rolling:5.3f}              {eta:5.3f}     {mu:5.1f}       {q:6.3f}           "
             f"{v:6.4f}  ", q < 0.07 and v < 0.007, good="ok")
     out = once(work / "F", "fit", "triaxial", "--specimen", specimen, "--same-specimens", "--curve", work / "data.csv",
-               *(word for key, (low, high) in RANGES.items() for word in ("--vary", f"{key}={low}:{high}")), *TEST, "--tests", tests, resume=True)
+               *(word for key, (low, high) in RANGES.items() for word in ("--vary", f"{key}={low}:{high}")), *TEST,
+               "--tests", tests, resume=True)
     found = json.loads((out / "fit.json").read_text())
     _, _, rolling, eta, mu = SCRIPTS["script of the data"]
     truth = dict(zip(RANGES, (rolling, eta, math.tan(math.radians(mu)))))

@@ -23,7 +23,8 @@ def tested(name, recipe, aspect=None):
     base = name.replace(" ", "_").replace("/", "").replace(",", "")
     shape = [f"grains.{end}_aspect_ratio={aspect}" for end in ("smallest", "largest")] if aspect else []
     out = once(work / f"{base}.h5", "run", "biaxial", "--specimen", packed(recipe, f"{base}_S", *shape),
-               *sets("test.pressure_Pa=100e3", "stage.compression.to_strain=0.15", 'output.quantities=["stress_force_fabric"]'))
+               *sets("test.pressure_Pa=100e3", "stage.compression.to_strain=0.15",
+                     'output.quantities=["stress_force_fabric"]'))
     rvelab("export", out, "--format", "csv", "-o", work / base, "--force")
     return out, work / base
 

@@ -5,10 +5,10 @@
 
 PROGRAM: rvelab. WORK: a folder of its own, in which runs that are whole are used again. RESULTS: where figures go.
 
-Rows with a limit end in `met`; DIFFERS, where the published number is another one and the cause is known, with the cause on the
-next line; or MISSED. A cause is given together with the range in which it explains what was found: a figure that leaves that
-range is MISSED again. A function under @bars judges plain figures: these are kept beside its rows, so that `tools/validate
---judge` can judge them by other limits without the runs."""
+Rows with a limit end in `met`; DIFFERS, where the published number is another one and the cause is known, with the
+cause on the next line; or MISSED. A cause is given together with the range in which it explains what was found: a
+figure that leaves that range is MISSED again. A function under @bars judges plain figures: these are kept beside its
+rows, so that `tools/validate --judge` can judge them by other limits without the runs."""
 
 import concurrent.futures
 import functools
@@ -41,7 +41,8 @@ def sets(*settings):
 
 
 def run(*command, codes=(0,), **options):
-    """Any command, its output captured; exits with its error where it ends with another code. codes=None: all are taken."""
+    """Any command, its output captured; exits with its error where it ends with another code. codes=None: all are
+    taken."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
     if codes is not None and done.returncode not in codes:
         sys.exit(f"{' '.join(map(str, command))}: exit code {done.returncode}: {(done.stderr or done.stdout).strip()[-500:]}")
@@ -71,9 +72,9 @@ def write(path, text):
 
 
 def once(out, *command, make=None, resume=False, codes=(0,)):
-    """OUT of `rvelab COMMAND -o OUT`, made unless it is there, whole, by the same command and files .toml of the same version.
-    make: a function that makes it instead; resume: what a run that was stopped left is continued; codes: of a run that is whole,
-    None: any that leaves OUT."""
+    """OUT of `rvelab COMMAND -o OUT`, made unless it is there, whole, by the same command and files .toml of the same
+    version. make: a function that makes it instead; resume: what a run that was stopped left is continued; codes: of a
+    run that is whole, None: any that leaves OUT."""
     out = pathlib.Path(out)
     mark = out.with_name(out.name + ".whole")
     texts = [word.read_text() for word in command if isinstance(word, pathlib.Path) and word.suffix == ".toml"]
@@ -121,12 +122,14 @@ def packed(recipe, name, *settings, options=()):
 
 def specimens(recipe, name, count, *settings, options=()):
     """WORK/NAME_1.h5 and so on, of seeds from 1."""
-    return [packed(recipe, f"{name}_{seed}", f"pack.seed={seed}", *settings, options=options) for seed in range(1, count + 1)]
+    return [packed(recipe, f"{name}_{seed}", f"pack.seed={seed}", *settings, options=options)
+            for seed in range(1, count + 1)]
 
 
 def imported(name):
     """WORK/NAME.h5 of a packing by YADE."""
-    return once(work / f"{name}.h5", "import", *(YADE / f"{name}{end}" for end in (".particles.csv", ".contacts.csv", ".json")))
+    return once(work / f"{name}.h5", "import", *(YADE / f"{name}{end}"
+                                                 for end in (".particles.csv", ".contacts.csv", ".json")))
 
 
 def protocol_without(name, kind):
@@ -138,7 +141,8 @@ def protocol_without(name, kind):
 
 
 def in_turn(function, items, threads=2):
-    """function(item) of each, on threads; the results in the order of the items, each as soon as those before it are there."""
+    """function(item) of each, on threads; the results in the order of the items, each as soon as those before it are
+    there."""
     with concurrent.futures.ThreadPoolExecutor(threads) as pool:
         yield from pool.map(function, items)
 
@@ -234,8 +238,8 @@ def text_of(found):
 
 
 def row(text, met, explained=False, cause="", good="met", what=None, reason=""):
-    """A row with its verdict. explained: whether the figure lies where `cause` (one sentence, with the run that isolates it)
-    puts it; good: the word where the limit holds; reason: by what it is missed, printed below MISSED."""
+    """A row with its verdict. explained: whether the figure lies where `cause` (one sentence, with the run that
+    isolates it) puts it; good: the word where the limit holds; reason: by what it is missed, printed below MISSED."""
     word = good if met else "DIFFERS" if explained and cause else "MISSED"
     given({"row": text, "verdict": word, "why": {"DIFFERS": cause, "MISSED": reason}.get(word, ""),
            "what": what or " ".join(text.split()[:6])})
@@ -258,7 +262,8 @@ def verdict(what, found, asked, met, explained=False, cause="", width=76, reason
 
 
 def bars(judge):
-    """Of a function that prints rows with verdicts from plain figures, its arguments. Its answer is kept by no table."""
+    """Of a function that prints rows with verdicts from plain figures, its arguments. Its answer is kept by no
+    table."""
     @functools.wraps(judge)
     def keeping(*figures, **named):
         entry({"bars": judge.__name__, "figures": plain(figures), "named": plain(named)})
@@ -270,7 +275,8 @@ def bars(judge):
 
 
 def main(check):
-    """Runs it; with `--judge NAME.json` judges the figures of a kept table instead, whose other entries are printed again."""
+    """Runs it; with `--judge NAME.json` judges the figures of a kept table instead, whose other entries are printed
+    again."""
     global totals
     if words[:1] == ["--judge"]:
         for found in json.loads(pathlib.Path(words[1]).read_text())["entries"]:

@@ -101,13 +101,15 @@ def specimens(program, name, count):
             if program == harness.program:
                 packed(path_of(recipe), file.stem, f"pack.seed={seed}", *settings, options=("--threads", 1))
             else:
-                once(file, program, name, make=lambda out: run(program, "pack", path_of(recipe), "-o", out, "--threads", 1,
+                once(file, program, name, make=lambda out: run(program, "pack", path_of(recipe), "-o", out,
+                                                               "--threads", 1,
                                                                *sets(f"pack.seed={seed}", *settings)))
         except SystemExit as refused:
             print(f"# {name} {seed}: {str(refused)[-200:]}", flush=True)
             continue
         # A family is a file for each depth: here the least deep.
-        made.append(file if file.exists() else min(work.glob(f"{name}_{seed}_*Pa.h5"), key=lambda each: int(each.stem.split("_")[-1][:-2])))
+        made.append(file if file.exists() else min(work.glob(f"{name}_{seed}_*Pa.h5"),
+                                                   key=lambda each: int(each.stem.split("_")[-1][:-2])))
     return made
 
 
@@ -119,7 +121,8 @@ def test(program, protocol, specimen, settings):
     done = run(program, "run", protocol, "--specimen", specimen, "-o", out, "--force", *sets(*settings), codes=None)
     if not out.exists():
         return np.zeros(0), np.zeros(0), np.nan, done.stderr
-    errors, substeps, stage, gradient, stress = records(out, "held_error", "substeps", "stage", "deformation_gradient", "stress_Pa").values()
+    errors, substeps, stage, gradient, stress = records(out, "held_error", "substeps", "stage", "deformation_gradient",
+                                                        "stress_Pa").values()
     if protocol in KEPT_VOLUME:
         last = stage == stage[-1]
         volume = abs(np.linalg.det(gradient) - 1)
@@ -177,7 +180,8 @@ def main():
     print("recipe        build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
     missed = 0
     for name in given.recipes:
-        files = specimens(given.before or harness.program, name, min(given.count, 5) if name in SPHERES else given.count)
+        files = specimens(given.before or harness.program, name,
+                          min(given.count, 5) if name in SPHERES else given.count)
         if given.before:
             line(given.before, name, files, "before")
         missed += line(harness.program, name, files, "after" if given.before else "")

@@ -87,8 +87,8 @@ def in_yade(script, folder, job):
 
 
 def cubic(program, stem, recipe):
-    """A packing of spheres in a cubic cell, so that it is the same in all programs: edge, positions, radii. It was packed in a cell that
-    differs from it by some 1e-4."""
+    """A packing of spheres in a cubic cell, so that it is the same in all programs: edge, positions, radii. It was
+    packed in a cell that differs from it by some 1e-4."""
     pathlib.Path(f"{stem}.toml").write_text(recipe)
     run([program, "pack", f"{stem}.toml", "-o", f"{stem}.h5", "--force"])
     run([program, "export", f"{stem}.h5", "--format", "csv", "-o", stem, "--force"])
@@ -104,8 +104,10 @@ def put(program, stem, edge, positions, radii, protocol):
     """An RVE of these spheres after a protocol."""
     with open(f"{stem}.apart.csv", "w", encoding="utf-8") as file:
         file.write("id,x,y,z,r\n")
-        file.writelines(f"{k},{float(x[0])!r},{float(x[1])!r},{float(x[2])!r},{r!r}\n" for k, (x, r) in enumerate(zip(positions, radii)))
-    run([program, "import", f"{stem}.apart.csv", "--cell", f"{edge!r},{edge!r},{edge!r}", "--material", f"{stem}.material.toml", "-o",
+        file.writelines(f"{k},{float(x[0])!r},{float(x[1])!r},{float(x[2])!r},{r!r}\n"
+                        for k, (x, r) in enumerate(zip(positions, radii)))
+    run([program, "import", f"{stem}.apart.csv", "--cell", f"{edge!r},{edge!r},{edge!r}", "--material",
+         f"{stem}.material.toml", "-o",
          f"{stem}.apart.h5", "--force"])
     pathlib.Path(f"{stem}.test.toml").write_text(protocol)
     run([program, "run", f"{stem}.test.toml", "--specimen", f"{stem}.apart.h5", "-o", f"{stem}.put.h5", "--force"])

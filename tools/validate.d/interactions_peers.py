@@ -43,7 +43,8 @@ def built():
     if not made.exists():
         debian_source.download("lammps", "trixie", work, "--tar-only")
         (work / "lammps").mkdir(exist_ok=True)
-        harness.run("tar", "xJf", next(work.glob("lammps_*.orig.tar.xz")), "-C", work / "lammps", "--strip-components=1", "--wildcards",
+        harness.run("tar", "xJf", next(work.glob("lammps_*.orig.tar.xz")), "-C", work / "lammps",
+                    "--strip-components=1", "--wildcards",
                     "*/src/*")
         for words in (["yes-bpm", "yes-granular", "yes-molecule"], ["serial"]):
             debian_source.make(made.parent, *words)

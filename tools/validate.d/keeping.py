@@ -87,8 +87,8 @@ def minutes(part, table):
 
 
 def stale(part, now, failures, folder=None):
-    """Why the table of a part is out of date, None where it is not. now: the version at hand; failures: folder of what parts
-    printed that failed."""
+    """Why the table of a part is out of date, None where it is not. now: the version at hand; failures: folder of what
+    parts printed that failed."""
     table = read(name_of(part.name), folder)
     if (failures / f"{part.name}.txt").exists():
         return "failed"

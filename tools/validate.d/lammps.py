@@ -52,7 +52,8 @@ def main():
         # LAMMPS goes through fractional coordinates and back: the last bits are its own.
         size = (box[:, 1] - box[:, 0]).max()
         error = abs(atoms_back[:, 2:5] - atoms[:, 2:5]).max() / size
-        if not (abs(box_back - box).max() <= 1e-15 * size and error <= 1e-15 and (atoms_back[:, 5] == atoms[:, 5]).all()):
+        if not (abs(box_back - box).max() <= 1e-15 * size and error <= 1e-15
+                and (atoms_back[:, 5] == atoms[:, 5]).all()):
             sys.exit(f"lammps: {name}: positions differ by {error} of the box")
         print(f"lammps: {name}: {atoms.shape[0]} atoms read back, largest error {error:.1e} of the box")
 

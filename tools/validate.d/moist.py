@@ -64,7 +64,8 @@ def sheared(specimen, pressure, suction):
     """Strength and stresses of one test; suction 0: dry."""
     protocol = PROTOCOLS / "unsaturated_shear.toml" if suction else protocol_without("unsaturated_shear", "water")
     out = once(work / f"{specimen.stem}_{pressure:g}_{suction:g}_shear.h5", "run", protocol, "--specimen", specimen,
-               *sets(f"test.pressure_Pa={pressure:g}", "stage.compression.record_every=0.001", "stage.compression.to_strain=0.03",
+               *sets(f"test.pressure_Pa={pressure:g}", "stage.compression.record_every=0.001",
+                     "stage.compression.to_strain=0.03",
                      *([f"stage.water.suction_Pa={suction:g}"] if suction else [])), codes=None)
     read = records(out, "strain", "stress_Pa", "bridge_stress_Pa", "bridges", "saturation", last=True)
     stress, bridge = -read["stress_Pa"], -read["bridge_stress_Pa"]
@@ -99,7 +100,8 @@ def strength():
         print(f"{s / 1e3:8.0f}      {p / 1e3:8.0f}       {in_words(column['q'], 1e-3, 2):14s}  {in_words(column['effective_phi']):18s}  "
               f"{in_words(column['p_c'], 1, 0):15s}  {in_words(column['p_c_sheared'], 1, 0):13s}  {in_words(column['bridges'], 1, 0)}, "
               f"{in_words(column['bridges_sheared'], 1, 0)}")
-    fits = {s: np.array([envelope_of([rows[s, p][k] for p in PRESSURES]) for k in range(COUNT)]) for s in (0, *SUCTIONS)}
+    fits = {s: np.array([envelope_of([rows[s, p][k] for p in PRESSURES]) for k in range(COUNT)])
+            for s in (0, *SUCTIONS)}
     print(f"\nintercept of the dry envelope: {in_words(fits[0][:, 0], 1, 0)} Pa")
     dry = fits[0][:, 0].copy()
     for each in fits.values():
@@ -121,8 +123,10 @@ def judge_strength(rows, fits):
     low = PRESSURES[0]
     mean = lambda name, s: np.mean([row[name] for row in rows[s, low]])
     c = np.array([fits[s][:, 0].mean() for s in SUCTIONS])
-    stronger = sum(all(rows[s, p][k]["q"] > rows[0, p][k]["q"] for s in SUCTIONS) for p in PRESSURES for k in range(COUNT))
-    verdict("moist specimens are stronger than the same dry", f"{stronger} of {len(PRESSURES) * COUNT}", "all", stronger == len(PRESSURES) * COUNT)
+    stronger = sum(all(rows[s, p][k]["q"] > rows[0, p][k]["q"] for s in SUCTIONS) for p in PRESSURES
+                   for k in range(COUNT))
+    verdict("moist specimens are stronger than the same dry", f"{stronger} of {len(PRESSURES) * COUNT}", "all",
+            stronger == len(PRESSURES) * COUNT)
     water = np.array([mean("saturation", s) for s in SUCTIONS])[::-1]
     slopes = np.diff(c[::-1]) / np.diff(water)
     rising = bool((np.diff(c[::-1])[:-1] > 0).all() and (np.diff(slopes) < 0).all())
@@ -157,9 +161,11 @@ def judge_strength(rows, fits):
 
 def flooded(specimen, stretch, pressure):
     """Void ratio moist and flooded."""
-    out = once(work / f"{specimen.stem}_{stretch:g}_{pressure:g}_wetted.h5", "run", PROTOCOLS / "collapse_on_wetting.toml", "--specimen",
+    out = once(work / f"{specimen.stem}_{stretch:g}_{pressure:g}_wetted.h5", "run",
+               PROTOCOLS / "collapse_on_wetting.toml", "--specimen",
                specimen, *sets(f"test.pressure_Pa={pressure:g}",
-                               f"stage.bulking.gradients=[[{stretch}, 0, 0, 0, {stretch}, 0, 0, 0, {stretch}]]"), codes=None)
+                               f"stage.bulking.gradients=[[{stretch}, 0, 0, 0, {stretch}, 0, 0, 0, {stretch}]]"),
+                               codes=None)
     return records(out, "void_ratio")["void_ratio"][-2:]
 
 

@@ -22,8 +22,8 @@ folder = work
 
 
 def run(name, scene, *options):
-    """Runs a scene into WORK/name unless it is there and whole, or goes on with one that was stopped; its history by columns, and what
-    it printed."""
+    """Runs a scene into WORK/name unless it is there and whole, or goes on with one that was stopped; its history by
+    columns, and what it printed."""
     printed, warned, scene = work / f"{name}.txt", work / f"{name}.warnings", PROTOCOLS / "mpm" / scene
     command = [scene, "--specimens", work, "-q", *options]
 
@@ -43,7 +43,8 @@ def run(name, scene, *options):
 
 
 def with_soil(name, scene, soil, *edits):
-    """WORK/name.toml: a scene without its cases, with a continuum in the place of its grains, and further edits (old, new)."""
+    """WORK/name.toml: a scene without its cases, with a continuum in the place of its grains, and further edits (old,
+    new)."""
     text = (PROTOCOLS / "mpm" / scene).read_text().split("\n[case.")[0]
     begin, end = text.index("[[material]]"), text.index("[[region]]")
     text = (text[:begin] + soil + text[end:]).replace('"dense"', '"soil"')
@@ -133,8 +134,9 @@ def cone(angle):
 
 
 def softening_curve(plastic, angle, dilation, pressure, young, nu):
-    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) of a soil at deviatoric plastic strains, the lateral
-    stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic = dlambda/sqrt(3)."""
+    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) of a soil at deviatoric plastic strains,
+    the lateral stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic =
+    dlambda/sqrt(3)."""
     alpha, beta = cone(angle), cone(dilation)
     q = 3 * alpha * pressure / (1 / np.sqrt(3) - alpha)
     return q / young + (1 - np.sqrt(3) * beta) * plastic, q, q * (1 - 2 * nu) / young - 3 * np.sqrt(3) * beta * plastic
@@ -177,7 +179,8 @@ def specimen(name="dense", *settings, recipe="pack_dense"):
 
 def cell_test(name="cell", *settings):
     """Axial strain, stress (Pa) and volumetric strain (compression +) of the biaxial test of dense.h5 at 100 kPa."""
-    path = once(work / f"{name}.h5", "run", "biaxial", "--specimen", specimen(), *sets("test.pressure_Pa=100e3", *settings))
+    path = once(work / f"{name}.h5", "run", "biaxial", "--specimen", specimen(),
+                *sets("test.pressure_Pa=100e3", *settings))
     h = records(path, "strain", "stress_Pa", "deformation_gradient", last=True)
     volume = np.linalg.det(h["deformation_gradient"])
     return h["strain"], -h["stress_Pa"][:, 1, 1], np.log(volume[0] / volume)
@@ -242,7 +245,8 @@ SETTINGS = [(0.003, 3e-5, 0), (0.01, 1e-4, 0), (0.03, 3e-4, 0), (0.1, 1e-3, 0), 
             (0.1, 1e-3, 3e-5), (0.1, 1e-3, 1e-4), (0.1, 1e-3, 3e-4)]
 FEW = [SETTINGS[k] for k in (1, 3, 10, 11, 12)]
 WINDOWS = np.linspace(0.001, 0.01, 91), np.linspace(0.01, 0.019, 91)  # axial strain: hardening, peak
-SCENES = {"element": ("top", 1, sets("time.duration_s=1.0", "time.cfl=0.05")), "biaxial": ("plate", 2, sets("time.duration_s=0.48"))}
+SCENES = {"element": ("top", 1, sets("time.duration_s=1.0", "time.cfl=0.05")),
+          "biaxial": ("plate", 2, sets("time.duration_s=0.48"))}
 
 
 def under_load(scene, setting, *options, packed="dense"):
@@ -250,7 +254,8 @@ def under_load(scene, setting, *options, packed="dense"):
     (plate, height, chosen), (rel, absolute, gather) = SCENES[scene], setting
     settings = [*(f"material.dense.{name}={value:g}" for name, value in
                   (("tolerance_rel", rel), ("tolerance_abs", absolute), ("gather", gather))),
-                f'material.dense.specimens=["{packed}.h5"]', "output.frame_every_s=1", "output.history_every_s=0.0025", *options]
+                f'material.dense.specimens=["{packed}.h5"]', "output.frame_every_s=1", "output.history_every_s=0.0025",
+                *options]
     name = "_".join(["tolerance", scene, f"{rel:g}", f"{absolute:g}", f"{gather:g}", packed, *options])
     h, printed = run(name.replace("=", "_"), f"{scene}.toml", "-j", "1", *chosen, *sets(*settings))
     stress = [np.interp(window, -h[f"{plate}.displacement_y_m"] / height, h[f"{plate}.force_y_N"] + 100e3) for window in WINDOWS]
@@ -292,7 +297,8 @@ def tolerance_figure(rows, step, other):
             chosen = [row for row in rows[1:] if (row[0][2] > 0) == gathers]
             axes.loglog([row[1] for row in chosen], [row[2][k] for row in chosen], style, label=label)
         for n, (_, steps, error, letter) in enumerate(sorted(rows[1:], key=lambda row: row[1])):
-            axes.annotate(letter, (steps, error[k]), xytext=(4, 4) if n % 2 else (-9, -9), textcoords="offset points", fontsize=8)
+            axes.annotate(letter, (steps, error[k]), xytext=(4, 4) if n % 2 else (-9, -9), textcoords="offset points",
+                          fontsize=8)
         axes.axhline(step[k], color="0.4", linestyle="--", linewidth=1, label="another time step")
         axes.axhline(other[k], color="0.4", linestyle=":", linewidth=1, label="another specimen")
         axes.set_title(title, fontsize=10, loc="left")

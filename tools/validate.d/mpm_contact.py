@@ -108,7 +108,8 @@ def main():
         print(f"cells of {cell:<6g} {contact:<8}{force.max():.0f}", flush=True)
     print("\ncolumn of soil (column_soil.toml): largest kinetic energy, dissipated; run-out by gaps of 1/2, 3/4, 1 cell")
     for contact in KINDS:
-        h, last = run("column_of_soil", (PROTOCOLS / "mpm/column_soil.toml").read_text(), f"body.base.contact={contact}")
+        h, last = run("column_of_soil", (PROTOCOLS / "mpm/column_soil.toml").read_text(),
+                      f"body.base.contact={contact}")
         ends = [mpm.front(last[1], 1 / 16, gap) - 1 for gap in (0.5, 0.75, 1)]
         whole = 2190 * 9.81 * 0.5
         print(f"{contact:<8} {h['kinetic_J'].max() / whole:.3f}  {(-h['potential_J'] - h['kinetic_J'])[-1] / whole:.2f}  "

@@ -1,4 +1,5 @@
-"""tools/validate mpm_damage: single flipped bits in what rvelab-mpm reads back. mpm_damage.py RVELAB WORK RESULTS [NUMBER]
+"""tools/validate mpm_damage: single flipped bits in what rvelab-mpm reads back. mpm_damage.py RVELAB WORK RESULTS
+[NUMBER]
 
 Runs of grains, dry and saturated, and one with a rock are stopped, rows that a kill might have left are added, and one bit at a time is
 flipped, seeded, NUMBER (1000) in each file that --resume reads. Each must be refused (exit code 2, one line that names

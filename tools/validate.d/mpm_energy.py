@@ -1,4 +1,5 @@
-"""tools/validate mpm_energy: mutated scenes must not end successfully with energy from nothing. mpm_energy.py RVELAB WORK RESULTS [NUMBER]
+"""tools/validate mpm_energy: mutated scenes must not end successfully with energy from nothing. mpm_energy.py RVELAB
+WORK RESULTS [NUMBER]
 
 NUMBER (1000) scenes: those of protocols/mpm, with a coarse mesh and small specimens, and one to three of their numbers
 changed by seed: by up to three powers of ten, in sign, to nothing or to what no soil bears. Each is refused (2), ends by

@@ -49,7 +49,9 @@ def cell_test(name, protocol, packed, *settings):
     all_ = records(path, "stage", "stress_Pa", "strain")
     stage, stress, strain = all_["stage"], -all_["stress_Pa"], all_["strain"]
     last = stage == stage.max()
-    return strain[last], stress[last][:, 0, 0], stress[last][:, 1, 1], {key: stage == key for key in np.unique(stage)}, stress, strain
+    return strain[last], stress[last][:, 0, 0], stress[last][:, 1,
+                                                             1], {key: stage == key
+                                                                  for key in np.unique(stage)}, stress, strain
 
 
 def void_ratio(packed):

@@ -166,7 +166,8 @@ def wave_far():
         name = f"wave_far_{case}"
         lasts = 0.32 if case == "isotropic" else 0.24  # s, until the trough has passed 18 m
         run(name, "wave.toml", "--case", case, *WAVE_OPTIONS,
-            *sets(f"region={region}", f"boundary.right.at_m={WIDE:g}", f"loads.strip={strip}", f"time.duration_s={lasts}",
+            *sets(f"region={region}", f"boundary.right.at_m={WIDE:g}", f"loads.strip={strip}",
+                  f"time.duration_s={lasts}",
                   f"output.watched_points_m={watch}"))
         density, G = density_and_shear(packed, frame_at(name, 0))
         rayleigh, w, n = 0.955 * np.sqrt(G / density), watched(name), len(FAR)

@@ -39,11 +39,13 @@ def pressed(share, seed):
 def shear(kind, share, seed, soil=None):
     """Axial and volumetric strain and deviatoric stress of one test. soil: keys of the material of the points."""
     edges, _, pores, cell, pressed_in = pressed(share, seed)
-    table = {group: f'{{name="{group}", material="grain", table="{pressed_in}/rocks_{group}.csv"}}' for group in ("fine", "coarse")}
+    table = {group: f'{{name="{group}", material="grain", table="{pressed_in}/rocks_{group}.csv"}}'
+             for group in ("fine", "coarse")}
     groups = ["coarse"] if share else []
     keys = [f"body.{plate}.centre_m={[edge if k == axis else 0 for k in range(3)]}"
             for axis, (plate, edge) in enumerate(zip(("right", "back", "top"), edges))]
-    keys += ["time.duration_s=0.145", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]", "output.frame_every_s=0.07"]
+    keys += ["time.duration_s=0.145", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]",
+             "output.frame_every_s=0.07"]
     if kind == "grains":
         groups.append("fine")
         keys += ["region=[]", "time.rock_steps_per_collision=10"]
@@ -152,7 +154,8 @@ def main():
             row(f"{share:2d} %, {name}: q, kPa", mean(kind, share)[3:3 + n])
             row("      volumetric, %", mean(kind, share)[3 + n:])
     print()
-    # B-splines of second order: the error of a cell h falls as h^2, and that of half of it is a third of their difference.
+    # B-splines of second order: the error of a cell h falls as h^2, and that of half of it is a third of their
+    # difference.
     MESH = ("nodes of cells of two points a side carry soil of both sides of a rock: the same packings in cells of one point, half "
             "as wide, lose more than half of the excess")
     REST = ("what is left of the mesh: the excess of cells twice as wide, extrapolated with the square of the cell over both tables, "
@@ -169,17 +172,20 @@ def main():
                 ratio = wide if kind == "points" else narrow
                 spread = ratio * np.hypot(scatter_of(kind, share, k), scatter_of("grains", share, k))
                 explained = (share > 0 and ratio > 1 and
-                             (abs(narrow - 1) <= 0.5 * (wide - 1) if kind == "points" else abs(narrow - (wide - narrow) / 3 - 1) < 0.1))
-                verdict(f"{share} %, {what}", f"{ratio:.3f} +- {spread:.3f}", "1 +- 0.1", abs(ratio - 1) < 0.1, explained,
+                             (abs(narrow - 1) <= 0.5 * (wide - 1) if kind == "points"
+                              else abs(narrow - (wide - narrow) / 3 - 1) < 0.1))
+                verdict(f"{share} %, {what}", f"{ratio:.3f} +- {spread:.3f}", "1 +- 0.1", abs(ratio - 1) < 0.1,
+                        explained,
                         MESH if kind == "points" else REST)
-            # The top of a curve is flat: where it is largest is known to where it is as large within two standard deviations,
-            # of the fit of the soil and of the mean of both.
+            # The top of a curve is flat: where it is largest is known to where it is as large within two standard
+            # deviations, of the fit of the soil and of the mean of both.
             within = 2 * np.sqrt(error**2 + scatter_of(kind, share, 0)**2 + scatter_of("grains", share, 0)**2)
             low, high = flat_top(share, within)
             at = mean(kind, share)[1]
             verdict(f"{share} %, strain at the peak, %: where q of the grains is within {100 * within:.1f} % of its peak",
                     f"{100 * at:.2f}", f"{100 * low:.2f} to {100 * high:.2f}", low <= at <= high,
-                    abs(at - of_law) < 1e-3 if share == 0 else kind == "points" and low <= mean("single", share)[1] <= high,
+                    abs(at - of_law) < 1e-3 if share == 0 else kind == "points"
+                    and low <= mean("single", share)[1] <= high,
                     FIT if share == 0 else MESH)
         print()
 

@@ -28,7 +28,8 @@ PEAK, RESIDUAL = np.radians(28.6), np.radians(18.6)
 
 def exact(plastic):
     """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains."""
-    angle = np.where(plastic < PEAK_STRAIN, np.polyval(CUBIC, plastic), RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
+    angle = np.where(plastic < PEAK_STRAIN, np.polyval(CUBIC, plastic),
+                     RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
     return softening_curve(plastic, angle, PSI, PRESSURE, E, NU)
 
 
@@ -61,7 +62,8 @@ def soil_alone():
     residual = q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
     verdict("mean from 10 to 16 %, kPa", f"{residual:.1f}", "46.9 +- 2", abs(residual - 46.9) < 2)
     before_load = (h["time_s"] > 0.005) & (h["time_s"] < 0.02)
-    rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max() for plate in ("right", "back", "top"))
+    rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max()
+               for plate in ("right", "back", "top"))
     verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
 
 
@@ -178,7 +180,8 @@ def stiffness(cell, share, contact):
     and 0.3 % of strain. A wave crosses in 0.7 ms: at 0.05 m/s, with 40 rows, the soil alone had 0.82 to 1.06 of its E."""
     where = "" if cell == "3.75 mm" else cell.replace(" ", "") + "_"
     options = at_surface(0.01) if contact == "surface" else sets("body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.01]]")
-    rocks = ("--case", f"rocks_{share}", *sets("rock_soil={" + f'contact="{contact}", rough=true' + "}")) if share else ()
+    rocks = ("--case", f"rocks_{share}",
+             *sets("rock_soil={" + f'contact="{contact}", rough=true' + "}")) if share else ()
     a, v, q, h, printed = test(f"{where}slow_elastic_{share}_{contact}", *rocks, *ELASTIC, *CELLS[cell], *options)
     return slope_of(a, q)
 
@@ -197,7 +200,8 @@ def one_rock(edge, radius):
     """E over that of the soil alone, of one rough rock in the middle of a cube between plates, at the surface, in the finest cells;
     the exact value, of a simple cubic array; the gap between rock and plate in cells."""
     def of(name, *rock):
-        h, _ = run(f"one_{name}_{1e3 * edge:g}", SCENE, "-j", "1", *ELASTIC, *CELLS[FINEST], *at_surface(0.01 * edge / EDGE, edge),
+        h, _ = run(f"one_{name}_{1e3 * edge:g}", SCENE, "-j", "1", *ELASTIC, *CELLS[FINEST],
+                   *at_surface(0.01 * edge / EDGE, edge),
                    *sets(f"region.0.upper_m={[edge] * 3}", *rock))
         axial, _, q = between_plates(h, [edge] * 3, 0.02)
         return slope_of(axial, q)

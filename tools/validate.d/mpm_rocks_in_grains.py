@@ -67,7 +67,8 @@ def cell(file):
 
 
 def scene(seed, rocks, one_point):
-    """The same of material points; residual energy over the work of the stress. one_point: the grid's cells are as large as the points, else twice."""
+    """The same of material points; residual energy over the work of the stress. one_point: the grid's cells are as
+    large as the points, else twice."""
     name = f"{'with' if rocks else 'without'}_rocks_{seed}" + ("_one" if one_point else "")
     h, printed = run(name, "rocks_in_grains.toml", "-j", "1", *sets(f'material.fine.specimens=["fine_{seed}.h5"]'),
                      *(sets(f"rocks.coarse.seed={seed}") if rocks else ("--case", "none")),
@@ -88,9 +89,11 @@ def peak_of(strain, ratio):
 
 def main():
     found, shares = {}, {}
-    print("sin of the mobilised angle of friction at axial strains of\n" + " " * 30 + " ".join(f"{100 * s:6.1f}%" for s in STRAINS) +
+    print("sin of the mobilised angle of friction at axial strains of\n" + " " * 30 + " ".join(f"{100 * s:6.1f}%"
+                                                                                               for s in STRAINS) +
           "   peak   at strain, %   volumetric at 3 %, %")
-    for what in ("fine, cell", "fine, scene", "fine, scene, one point", "mixture, cell", "mixture, scene", "mixture, scene, one point"):
+    for what in ("fine, cell", "fine, scene", "fine, scene, one point", "mixture, cell", "mixture, scene",
+                 "mixture, scene, one point"):
         shares[what] = []
         for seed in SEEDS:
             fine = specimen(f"fine_{seed}", "contact.rolling=false", f"pack.seed={seed}")
@@ -117,7 +120,8 @@ def main():
         spread = ratio * np.hypot(error[what] / mean[what], error[cells] / mean[cells])
         one = what if what.endswith("one point") else what + ", one point"
         single = mean[one] / mean[cells]
-        verdict(f"{what}: peak over that of the periodic cell, means of {len(SEEDS)}", f"{ratio:.3f} +- {spread:.3f}", "1 +- 0.1",
+        verdict(f"{what}: peak over that of the periodic cell, means of {len(SEEDS)}", f"{ratio:.3f} +- {spread:.3f}",
+                "1 +- 0.1",
                 abs(ratio - 1) < 0.1, what == "mixture, scene" and ratio > 1 and abs(single - 1) <= 0.5 * (ratio - 1),
                 f"nodes of cells of two points a side carry soil of both sides of a rock: the same specimens in cells of one point, "
                 f"half as wide, stand at {single:.3f}")

@@ -14,7 +14,8 @@ import numpy as np
 import harness
 from harness import answer, bars, columns, results, sets, verdict
 from mpm import (
-    costs, folder, frames, front, grain_steps, last_frame, mohr_coulomb, moving_mean, picture, plot_style, rows_in, run, specimen, with_soil)
+    costs, folder, frames, front, grain_steps, last_frame, mohr_coulomb, moving_mean, picture, plot_style, rows_in,
+    run, specimen, with_soil)
 
 plt = plot_style()
 
@@ -41,7 +42,8 @@ def footing_run(name, soil, seed, *options):
 
 def bearing_factors(soil, seed):
     """N_q of rvelab calibrate, of general and of local shear, and the friction angle (degrees)."""
-    found = answer("calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5", "--pressures", "10e3,20e3,30e3",
+    found = answer("calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5", "--pressures",
+                   "10e3,20e3,30e3",
                    "--threads", "1")
     return found["bearing_capacity_Nq"], found["local_shear_Nq"], found["friction_angle_deg"]
 
@@ -97,14 +99,16 @@ def first_level(depth, load):
 def footing_published():
     """The size and speed of the paper: soft soil, which takes the fewest grain-steps, until beside the footing's edge a
     grain of one RVE is pinched beyond half its radius, and dense soil beyond its peak."""
-    depth, load, steps = soft = footing_run("footing_soft_published", "soft", 1, "--published", *sets("time.duration_s=9.5"))
+    depth, load, steps = soft = footing_run("footing_soft_published", "soft", 1, "--published",
+                                            *sets("time.duration_s=9.5"))
     print(f"Soft soil at the published size (12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s), to d/B {depth[-1]:.2f}\n")
     print_loads(depth, load, (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4))
     level = first_level(depth, load)
     if level:
         print(f"it first stops rising (mean over 0.05) at d/B {level[0]:.2f}, {level[1]:.2f} (published: ultimate load 3.7)")
     print_costs("footing_soft_published", steps)
-    depth, load, steps = dense = footing_run("footing_dense_published", "dense", 1, "--published", *sets("time.duration_s=2.5"))
+    depth, load, steps = dense = footing_run("footing_dense_published", "dense", 1, "--published",
+                                             *sets("time.duration_s=2.5"))
     print(f"\nDense soil at the published size, to d/B {depth[-1]:.2f}\n")
     print_loads(depth, load, (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875))
     print(f"largest {load.max():.2f} at d/B {depth[load.argmax()]:.3f} (published 14.4)")
@@ -116,7 +120,8 @@ def footing_published():
 
 
 def footing_published_5():
-    depth, load, steps = footing_run("footing_dense_5_published", "dense", 5, "--published", *sets("time.duration_s=2.5"))
+    depth, load, steps = footing_run("footing_dense_5_published", "dense", 5, "--published",
+                                     *sets("time.duration_s=2.5"))
     factor, _, angle = bearing_factors("dense", 5)
     print(f"Dense soil of seed 5 (N_q {factor:.1f}, {angle:.2f} degrees) at the published size, to d/B {depth[-1]:.3f}\n")
     print_loads(depth, load, [d for d in (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875) if d < depth[-1]])
@@ -196,8 +201,8 @@ def column_of_grains(name, *options):
 
 
 def forces_on_pipe(name, h):
-    """Of a run: rows on the way down and, once it has begun, aside; upward and sideward force (kN/m), means over 0.05 s; the watched
-    points and their row of the turn."""
+    """Of a run: rows on the way down and, once it has begun, aside; upward and sideward force (kN/m), means over 0.05
+    s; the watched points and their row of the turn."""
     time, left = h["time_s"], -h["pipe.displacement_x_m"]
     up, aside = (moving_mean(h[f"pipe.force_{axis}_N"] / 1e3, rows_in(time, 0.05)) for axis in "yx")
     turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
@@ -216,7 +221,8 @@ def pipe():
           + "\nvertical (kN)    " + "".join(f"{np.interp(d, depth[down], up[down]):<8.0f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nway aside (m)    " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.71, 0.1)))
     for name, force in (("vertical (kN)", up), ("horizontal (kN)", aside)):
-        print(f"{name:<17}" + "".join(f"{np.interp(d, left[~down], force[~down]):<8.0f}" for d in np.arange(0.1, 0.71, 0.1)))
+        print(f"{name:<17}" + "".join(f"{np.interp(d, left[~down], force[~down]):<8.0f}"
+                                      for d in np.arange(0.1, 0.71, 0.1)))
     print()
     pipe_bars(up[down].max(), up[lateral].mean(), aside[lateral].mean())
     print("\npoint  eps_q, rotation (degrees) at the turn    at the end         published")

@@ -92,7 +92,8 @@ def alone(shape):
     """Change of the volume of soil without rocks between three plates, from 50 to 200 kPa in 0.01 s, at 0.04 s: by the plates
     and by its points; what mapping takes over the work of the stress."""
     edge = 0.04
-    keys = [f'grid.shape="{shape}"', "rocks=[]", f"region.0.upper_m={[edge] * 3}", "time.duration_s=0.04", "body.top.pressure_until_s=1",
+    keys = [f'grid.shape="{shape}"', "rocks=[]", f"region.0.upper_m={[edge] * 3}", "time.duration_s=0.04",
+            "body.top.pressure_until_s=1",
             *(f"body.{plate}.centre_m={[edge * (k == axis) for k in range(3)]}" for axis, plate in enumerate(("right", "back", "top")))]
     h, _ = run(f"alone_{shape}", "soil_rock_triaxial.toml", "-j", "1", *sets(*keys))
     sides = [edge + h[f"{plate}.displacement_{axis}_m"][-1] for plate, axis in (("right", "x"), ("back", "y"), ("top", "z"))]
@@ -117,7 +118,8 @@ def main():
           "   error  volumetric, %   E over the soil's (bound)   lost, mapped, open, %   trace, kPa: rocks, soil, both   s a million")
     for pressure in pressures:
         for size in SHARE:
-            found[pressure, size] = row(pressure, size, "surface", [tested(size, pressure, seed) for seed in SEEDS[pressure]])
+            found[pressure, size] = row(pressure, size, "surface",
+                                        [tested(size, pressure, seed) for seed in SEEDS[pressure]])
         if pressure == 200:
             ghosts = {size: row(pressure, size, "ghost", [tested(size, pressure, 1, True)])[0][0] for size in SHARE}
             alike = row(pressure, 20, "0.389", [tested(20, pressure, seed, share=SHARE[10]) for seed in SEEDS[200]])[0]
@@ -136,22 +138,27 @@ def main():
                 f"{', '.join(f'{x:.0f}' for x in rocks)} kPa")
         highest = max(((x, k) for each, of in zip(still, parts) for x, k in zip(each, of)), key=lambda pair: pair[0])[1]
         of_rocks, of_soil, of_both = highest[1] - highest[0]
-        verdict(f"{pressure} kPa: largest q over that at 14.5 %: no peak", " ".join(f"{x.max():.3f}" for x in still), "1 to 1.02",
+        verdict(f"{pressure} kPa: largest q over that at 14.5 %: no peak", " ".join(f"{x.max():.3f}" for x in still),
+                "1 to 1.02",
                 max(x.max() for x in still) < 1.02, of_rocks > 0.8 * (of_rocks + of_soil + of_both),
                 f"a chain of rocks between the plates that gives way: of the fall of the trace by {of_rocks + of_soil + of_both:.0f} kPa "
                 f"{of_rocks:.0f} kPa are forces between rocks, {of_soil:.0f} kPa soil, {of_both:.0f} kPa between both")
-        verdict(f"{pressure} kPa: least E over the bound of rough rigid spheres", " ".join(f"{x.min():.2f}" for x in stiff), "1 and more",
+        verdict(f"{pressure} kPa: least E over the bound of rough rigid spheres",
+                " ".join(f"{x.min():.2f}" for x in stiff), "1 and more",
                 min(x.min() for x in stiff) >= 1)
         # What does not close would be work from nothing, as much of the strength.
         unclosed = {key: value for key, value in open_energy.items() if key[0] == pressure}
-        for k, what in ((0, "energy of soil, rocks and their contact that does not close"), (1, "energy that mapping gains")):
-            verdict(f"{pressure} kPa: {what}, of the plates' work", " ".join(f"{100 * value[k]:.1f}" for value in unclosed.values()),
+        for k, what in ((0, "energy of soil, rocks and their contact that does not close"),
+                        (1, "energy that mapping gains")):
+            verdict(f"{pressure} kPa: {what}, of the plates' work",
+                    " ".join(f"{100 * value[k]:.1f}" for value in unclosed.values()),
                     "2 %", max(value[k] for value in unclosed.values()) < 0.02)
         if pressure == 200:
             print(f"      rocks of 20 mm at the share of those of 10 mm: {alike.mean():.0f} +- {whole(error(alike))} kPa")
             ratios = [found[pressure, size][0][0] / ghosts[size] for size in SHARE]
             wide, half = surface_over_balls()
-            verdict("200 kPa, first drawing: q at the surface over that of ghosts at 14.5 %", " ".join(f"{x:.3f}" for x in ratios),
+            verdict("200 kPa, first drawing: q at the surface over that of ghosts at 14.5 %",
+                    " ".join(f"{x:.3f}" for x in ratios),
                     "0.95 to 1.05", all(0.95 <= x <= 1.05 for x in ratios),
                     ratios[0] < ratios[1] < ratios[2] < 1.05 and abs(half - 1) < 0.05 and wide < 0.95,
                     f"the mesh: rocks are {', '.join(f'{size / CELL:.0f}' for size in SHARE)} cells across, and the narrower one is, the more of a ball's "

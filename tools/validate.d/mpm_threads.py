@@ -1,4 +1,5 @@
-"""tools/validate mpm_threads: what threads share of a step with three bodies on 10,000 points. mpm_threads.py RVELAB WORK RESULTS
+"""tools/validate mpm_threads: what threads share of a step with three bodies on 10,000 points. mpm_threads.py RVELAB
+WORK RESULTS
 
 The same bits on 1, 2, 3 and 5 threads; the share of a step's instructions that are made in pieces (callgrind, any
 machine), and what two cores can make of it; best wall time of three on one and on two threads (a quiet machine)."""
@@ -55,7 +56,8 @@ checkpoint_every_s = 0.3
 def run(threads, *before, stop="0.3"):
     out = work / f"threads_{threads}"
     shutil.rmtree(out, ignore_errors=True)
-    done = harness.run(*before, mpm, work / "three.toml", "-o", out, "-q", "-j", threads, *sets(f"time.duration_s={stop}"))
+    done = harness.run(*before, mpm, work / "three.toml", "-o", out, "-q", "-j", threads,
+                       *sets(f"time.duration_s={stop}"))
     return out, float(re.search(r"wall ([\d.e+-]+) s", done.stdout)[1])
 
 

@@ -103,13 +103,15 @@ def flow(name, specimen, plane, inertial, strain, normal):
     stress = -rows["stress_Pa"][late]
     normal_stress, shear = stress[:, across, across], -stress[:, along, across]
     mu, error = blocks(shear / normal_stress.mean())
-    return out, {"held": normal_stress.mean() / PRESSURE, "scatter": normal_stress.std() / normal_stress.mean(), "mu": mu,
+    return out, {"held": normal_stress.mean() / PRESSURE, "scatter": normal_stress.std() / normal_stress.mean(),
+                 "mu": mu,
                  "error": error, "flagged": 1 - rows["target_held"].mean(), "substeps": rows["substeps"].sum()}
 
 
 def angle(specimen, spacing):
     """Friction angle of a biaxial test, degrees: of the largest mean axial stress over 1 % of strain."""
-    rows = records(tested(f"biaxial_{spacing:g}", BIAXIAL.format(spacing=spacing), specimen), "stress_Pa", "inertial_number")
+    rows = records(tested(f"biaxial_{spacing:g}", BIAXIAL.format(spacing=spacing), specimen), "stress_Pa",
+                   "inertial_number")
     stress, inertial = -rows["stress_Pa"], np.median(rows["inertial_number"][1:])
     width = max(1, round(0.01 / spacing))
     largest = np.convolve(stress[1:, 1, 1], np.ones(width) / width, "valid").max() / PRESSURE

@@ -46,12 +46,14 @@ def main():
     with open(log, "w") as out:
         launcher = ["-D", "CMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         for command in (["cmake", "--preset", "release", "-D", "RVELAB_WERROR=ON", *launcher],
-                        ["cmake", "--build", "--preset", "release", "--parallel", jobs, "--target", "test_interaction"]):
+                        ["cmake", "--build", "--preset", "release", "--parallel", jobs, "--target",
+                         "test_interaction"]):
             if subprocess.run(command, cwd=copy, stdout=out, stderr=out).returncode != 0:
                 sys.exit(f"new_law: {' '.join(command)} failed; see {log}")
     print("touched: " + ", ".join(touched))
     for tests in ("[new_law]", "~[new_law]"):
-        run = subprocess.run([copy / "build/release/bin/test_interaction", tests], capture_output=True, text=True, cwd=copy)
+        run = subprocess.run([copy / "build/release/bin/test_interaction", tests], capture_output=True, text=True,
+                             cwd=copy)
         lines = run.stdout.strip().split("\n")
         print(f"{tests}: {lines[-1]}")
         if run.returncode != 0:

@@ -38,7 +38,8 @@ def processor_seconds():
 
 
 def pack(recipe, settings, count, threads):
-    return run(harness.program, "pack", recipe, "-o", work / "S.h5", "--count", count, "--json", "--threads", threads, "--force",
+    return run(harness.program, "pack", recipe, "-o", work / "S.h5", "--count", count, "--json", "--threads", threads,
+               "--force",
                *sets(*settings), codes=None)
 
 

@@ -5,8 +5,8 @@ import harness
 from harness import bars, packed, row
 
 ALLOWED = {1e-4: 1, 1e-5: 1.2, 1e-6: 2, 1e-7: 6}  # time over that of increments of 1e-4, at most
-# Standard errors that a mean may be beyond its tolerance. Some 50 means are independent: one of them is beyond two by chance in most
-# runs of the table, beyond three in one of fifteen.
+# Standard errors that a mean may be beyond its tolerance. Some 50 means are independent: one of them is beyond two by
+# chance in most runs of the table, beyond three in one of fifteen.
 BY_CHANCE = 3
 
 
@@ -20,7 +20,8 @@ def path(name, lines):
             if error > allowed + BY_CHANCE * scatter:
                 beyond = f", {(error - allowed) / scatter:.3g} standard errors beyond" if scatter else ""
                 why.append(f"stress at {0.25 * (k + 1):g} %: {error / allowed:.3g} times its tolerance{beyond}")
-        row(f"{name:<12} {size:6.0e} {substeps:9.0f} {seconds:8.3f} {ratio:6.2f} {bar:4.1f} " + "".join(f" {each:8.5f}" for each in quarters) + " ",
+        row(f"{name:<12} {size:6.0e} {substeps:9.0f} {seconds:8.3f} {ratio:6.2f} {bar:4.1f} " + "".join(f" {each:8.5f}"
+                                                                                                        for each in quarters) + " ",
             not why, reason="; ".join(why), what=f"{name}, {size:g}")
 
 
@@ -30,7 +31,8 @@ def main():
           "and tolerance, over p\npath         pieces sub-steps     time  ratio  bar " +
           "".join(f"   {0.25 * k:.2f} %: error, s.e., allowed" for k in (1, 2, 3, 4)))
     lines = {}
-    for line in harness.run(harness.program.with_name("rvelab-pieces"), packed("pack_dense", "dense"), repeats).stdout.splitlines():
+    for line in harness.run(harness.program.with_name("rvelab-pieces"), packed("pack_dense", "dense"),
+                            repeats).stdout.splitlines():
         name, *numbers = line.split(",")
         lines.setdefault(name, []).append([float(each) for each in numbers])
     for name, each in lines.items():

@@ -25,7 +25,8 @@ COPIES = 16  # of the soft packing
 
 def run(protocol, packing, name, *settings):
     out = work / f"{name}.h5"
-    done = harness.run(harness.program, "run", protocol, "--specimen", work / f"{packing}.h5", "-o", out, "--force", "--json",
+    done = harness.run(harness.program, "run", protocol, "--specimen", work / f"{packing}.h5", "-o", out, "--force",
+                       "--json",
                        *sets(*settings), codes=None)
     if done.returncode != 0:
         raise RuntimeError(f"{name}: {done.stderr.strip()}")
@@ -177,7 +178,8 @@ def line(case):
     flagged = 1 - test.held.mean()
     good = good and flagged <= FLAGGED
     means = (f"{test.mobilised():6.3f} {paced.mobilised():6.3f} {test.pressure_ratio():7.3f} {paced.pressure_ratio():7.3f}")
-    return (f"{name:37} {len(test.held):7d} {flagged:8.2%} {test.steps:11.4g} {paced.steps:11.4g} {means}  {text} ", good,
+    return (f"{name:37} {len(test.held):7d} {flagged:8.2%} {test.steps:11.4g} {paced.steps:11.4g} {means}  {text} ",
+            good,
             test.steps, paced.steps)
 
 
@@ -191,7 +193,8 @@ def main():
         cells[column] = repr(math.nextafter(float(cells[column]), math.inf))
         table = work / f"soft_{copy}.csv"
         table.write_text("\n".join(grains[:copy] + [",".join(cells)] + grains[copy + 1:]) + "\n")
-        rvelab("import", table, YADE / "soft.contacts.csv", YADE / "soft.json", "-o", work / f"soft_{copy}.h5", "--force")
+        rvelab("import", table, YADE / "soft.contacts.csv", YADE / "soft.json", "-o", work / f"soft_{copy}.h5",
+               "--force")
     cases = [("oedometer", packing, [], oedometer) for packing in ("dense", "medium", "soft", "noroll", "hertz")] + CASES
     if harness.words:
         cases = [case for case in cases if case[0] in harness.words]

@@ -26,7 +26,8 @@ def make_pages():
         rvelab("pack", "pack_dense", "-o", f"{group}.h5", "--count", 3,
                *sets("pack.number=200", f"target.void_ratio={void_ratio}"))
         rvelab("run", "biaxial", "--specimen", f"{group}_*.h5", "-o", group, *sets("test.pressure_Pa=100e3"), *tests)
-    recipe = "\n".join(line for line in rvelab("protocols", "pack_dense").splitlines() if not line.startswith("thickness_m"))
+    recipe = "\n".join(line for line in rvelab("protocols", "pack_dense").splitlines()
+                       if not line.startswith("thickness_m"))
     (folder / "spheres.toml").write_text(recipe.replace('"disc"', '"sphere"').replace("0.1874", "0.6").replace("400", "300"))
     rvelab("pack", "spheres.toml", "-o", "spheres.h5")
     rvelab("run", "triaxial", "--specimen", "spheres.h5", "-o", "triaxial.h5", *tests)
@@ -48,7 +49,8 @@ def address(page):
 def main():
     make_pages()
     with Browser(shutil.which("chromium")) as browser:
-        for page, width, height in (("groups", 1280, 700), ("space", 1280, 620), ("mpm", 1280, 620), ("rocks", 1280, 620), ("groups", 390, 700)):
+        for page, width, height in (("groups", 1280, 700), ("space", 1280, 620), ("mpm", 1280, 620),
+                                    ("rocks", 1280, 620), ("groups", 390, 700)):
             browser.open(address(page), width, height, width < 500, READY)
             browser.picture(str(results / f"report_{page}_{width}.png"))
         empty = statistics.median(browser.open(address("empty")) for _ in range(5))

@@ -116,7 +116,8 @@ def main():
             case = work / f"{name}_{box}"
             rvelab("export", state, "--format", "lammps-data", "-o", f"{case}.data", "--force")
             _, atoms = stated(case.with_suffix(".data"), "write_data")
-            case.with_suffix(".in").write_text(SCRIPT.format(dimension=dimension, stem=case, cutoff=2.5 * atoms[:, 4].max()))
+            case.with_suffix(".in").write_text(SCRIPT.format(dimension=dimension, stem=case,
+                                                             cutoff=2.5 * atoms[:, 4].max()))
             run("lmp", "-in", f"{case}.in", "-log", "none")
             for style in ("plain", "unwrapped", "scaled", "packed.gz", "units", "liggghts", "written"):
                 path = case.with_name(f"{case.name}.{style}")
@@ -124,13 +125,15 @@ def main():
                         read(path, f"{stem}.material.toml", f"{case}.back.h5"))
     if shutil.which("yade"):
         table, text, script = (work / name for name in ("table", "yade.txt", "export.py"))
-        numpy.savetxt(table, numpy.loadtxt(YADE / "hertz.particles.csv", delimiter=",", comments=("#", "i"))[:, 1:5], fmt="%.17g")
+        numpy.savetxt(table, numpy.loadtxt(YADE / "hertz.particles.csv", delimiter=",", comments=("#", "i"))[:, 1:5],
+                      fmt="%.17g")
         script.write_text(EXPORT.format(table=table, text=text))
         run("yade", "-x", "-n", script)
         rows = numpy.loadtxt(text)
         atoms = numpy.column_stack([numpy.arange(1, len(rows) + 1), rows])
         edges = rows[:, :3].max(axis=0) - rows[:, :3].min(axis=0) + 2 * rows[:, 3].max()
-        compare("hertz, YADE's text", numpy.diag(edges), atoms, read(text, work / "rt_hertz.material.toml", work / "y.h5", "--cell",
+        compare("hertz, YADE's text", numpy.diag(edges), atoms,
+                read(text, work / "rt_hertz.material.toml", work / "y.h5", "--cell",
                                                                      ",".join(repr(float(edge)) for edge in edges)))
 
 

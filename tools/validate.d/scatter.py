@@ -15,8 +15,10 @@ MEASURES = {"friction_angle_deg": "friction angle", "dilation_angle_deg": "dilat
 
 
 def main():
-    out = harness.once(work / "sweep", "fit", "biaxial", "--recipe", "pack_dense", "--count", *(harness.words or [20]), "--vary",
-                       "pack.number=50:1600:6:log", *sets("stage.compression.to_strain=0.05", "target.void_ratio_tolerance=0.003"), resume=True)
+    out = harness.once(work / "sweep", "fit", "biaxial", "--recipe", "pack_dense", "--count", *(harness.words or [20]),
+                       "--vary",
+                       "pack.number=50:1600:6:log", *sets("stage.compression.to_strain=0.05",
+                                                          "target.void_ratio_tolerance=0.003"), resume=True)
     print("grains  specimens  measure          mean        sd             sd sqrt(grains)  specimens for 0.5 degrees")
     with open(out / "sweep.csv", newline="") as table:
         for row in csv.DictReader(table):

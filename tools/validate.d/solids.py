@@ -1,4 +1,5 @@
-"""tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB WORK RESULTS [NUMBER [SPECIMENS]]
+"""tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB WORK RESULTS [NUMBER
+[SPECIMENS]]
 
 Solid fraction and mechanical coordination number beside what is published. Without friction a random packing has as many
 contacts as its grains have degrees of freedom, two a contact: Z is 6 of spheres, at most 10 of spheroids and 12 of ellipsoids;
@@ -35,12 +36,15 @@ def skeleton(path, least):
 
 def packed(half, friction, seed):
     """Solid fraction and contacts a grain of one packing."""
-    file = harness.packed("pack_ellipsoids", f"{'_'.join(map(str, half))}_{friction}_{seed}", f"pack.number={number}", f"pack.seed={seed}",
+    file = harness.packed("pack_ellipsoids", f"{'_'.join(map(str, half))}_{friction}_{seed}", f"pack.number={number}",
+                          f"pack.seed={seed}",
                           f"grains.half_axes={half}", "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3",
-                          f"preparation.friction={friction}", f"material.quartz.friction={friction}", "target.pressure_Pa=1e5",
+                          f"preparation.friction={friction}", f"material.quartz.friction={friction}",
+                          "target.pressure_Pa=1e5",
                           "target.unbalanced=1e-3", "target.stress_tolerance=1e-2")
     rvelab("export", file, "--format", "csv", "-o", work / file.stem, "--force")
-    return 1 / (1 + answer("inspect", file)["void_ratio"]), skeleton(work / f"{file.stem}.contacts.csv", 2 if friction else 4)
+    return 1 / (1 + answer("inspect", file)["void_ratio"]), skeleton(work / f"{file.stem}.contacts.csv",
+                                                                     2 if friction else 4)
 
 
 def between(value, bounds, below, above):
@@ -56,9 +60,11 @@ def main():
     print(f"{number} grains of one size, {specimens} specimens of each; 100 kPa of 7 GPa; mean +- standard deviation")
     for name, half, friction, fraction, Z in shapes:
         fractions, contacts = zip(*(packed(half, friction, seed) for seed in range(1, specimens + 1)))
-        for what, values, asked, margin in (("solid fraction", fractions, fraction, (0.01, 0.01)), ("Z of the skeleton", contacts, Z, (0.2, 0.6))):
+        for what, values, asked, margin in (("solid fraction", fractions, fraction, (0.01, 0.01)),
+                                            ("Z of the skeleton", contacts, Z, (0.2, 0.6))):
             if asked:
-                verdict(f"{name}: {what}", f"{statistics.mean(values):.3f} +- {statistics.stdev(values):.3f}", span(asked, *margin),
+                verdict(f"{name}: {what}", f"{statistics.mean(values):.3f} +- {statistics.stdev(values):.3f}",
+                        span(asked, *margin),
                         between(statistics.mean(values), asked, *margin))
 
 

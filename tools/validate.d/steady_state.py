@@ -1,11 +1,11 @@
 """Large simple shear against LAMMPS: steady_state.py RVELAB WORK RESULTS.
 
-Runs protocols/large_shear.toml from the starts of ../shared/reference/lammps/rve/init and holds the means over 4 < gamma <= 10
-against lammps/rve/steady_state.csv: contact pressure p, shear stress Pxz, trace of the Reynolds stress tr R,
-and ratio = tr R / tr P, each within 4 sqrt(se^2 + se_own^2) at porosities 0.738, 0.548, 0.371; at 0.282 from random starts
-within 5 %, or within 2 sqrt(se^2 + se_own^2) where two means of that scatter could not tell 5 % (the fcc start has no unique
-steady state and is shown only). se: the larger of the standard errors
-of 12 blocks and between the runs. The figure draws ratio against porosity.
+Runs protocols/large_shear.toml from the starts of ../shared/reference/lammps/rve/init and holds the means over 4 <
+gamma <= 10 against lammps/rve/steady_state.csv: contact pressure p, shear stress Pxz, trace of the Reynolds stress tr
+R, and ratio = tr R / tr P, each within 4 sqrt(se^2 + se_own^2) at porosities 0.738, 0.548, 0.371; at 0.282 from random
+starts within 5 %, or within 2 sqrt(se^2 + se_own^2) where two means of that scatter could not tell 5 % (the fcc start
+has no unique steady state and is shown only). se: the larger of the standard errors of 12 blocks and between the runs.
+The figure draws ratio against porosity.
 
 Then protocols/complex_loading.toml from the first start of porosity 0.548: the volume is that of its velocity gradient to
 1e-12, and Reynolds over contact stress falls as the spheres come closer.
@@ -45,7 +45,8 @@ def start_of(name):
 
 
 def make(name):
-    specimen = once(work / f"{name}.h5", "import", start_of(name), "--cell", "2,2,2", "--material", work / "grains.toml")
+    specimen = once(work / f"{name}.h5", "import", start_of(name), "--cell", "2,2,2", "--material",
+                    work / "grains.toml")
     # n282 starts with overlaps of a tenth of a diameter.
     return once(work / f"R_{name}.h5", "run", "large_shear", "--specimen", specimen,
                 *sets("stage.shear.record_every=0.002", "solver.max_overlap_ratio=1"), resume=True)
@@ -66,7 +67,8 @@ def complex_loading():
         inside = (strain > begin) & (strain <= end + 1e-9)
         ratio = reynolds[inside].mean() / contact[inside].mean()
         porosity = (void_ratio[inside] / (1 + void_ratio[inside])).mean()
-        row(f"{begin:2} to {end:2}  {porosity:.3f}     {contact[inside].mean() / 3:8.1f}   {ratio:.4f} ", ratio < before, good="")
+        row(f"{begin:2} to {end:2}  {porosity:.3f}     {contact[inside].mean() / 3:8.1f}   {ratio:.4f} ",
+            ratio < before, good="")
         before = ratio
 
 
@@ -93,7 +95,8 @@ def steady_row(case, quantity, mean, own, expected, se):
     bound = 0.05 * abs(expected) if rule == "shown" else allowed(rule, expected, np.hypot(se, own))
     off = abs(mean - expected)
     row(f"{case:7} {quantity:8} {mean:13.6g} {own:12.3g} {expected:12.6g} {se:12.3g} {off / abs(expected):9.2%} "
-        f"{bound / abs(expected):8.2%} ", rule == "shown" or off <= bound, good="shown" if rule == "shown" else "ok", what=f"{case} {quantity}")
+        f"{bound / abs(expected):8.2%} ", rule == "shown" or off <= bound, good="shown" if rule == "shown" else "ok",
+        what=f"{case} {quantity}")
 
 
 def main():

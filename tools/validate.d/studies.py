@@ -23,12 +23,16 @@ def main():
     if harness.words == ["tolerance"]:
         study("", "tolerance", packed("pack_dense", "S"), figure="study_tolerance.png")
         return
-    study("1000 spheres, Hertz-Mindlin, triaxial to 5 %", "tolerance_3d", packed("pack_hertz", "hertz"), figure="study_tolerance_3d.png")
+    study("1000 spheres, Hertz-Mindlin, triaxial to 5 %", "tolerance_3d", packed("pack_hertz", "hertz"),
+          figure="study_tolerance_3d.png")
     for number in (100, 400, 1600):
-        study(f"{number} discs, biaxial to 5 %", "number_of_grains", packed("pack_dense", f"n{number}", f"pack.number={number}"))
-    for ratio, pressure, strain, every in (("1e2", "4e5", "0.2", "2e-3"), ("1e4", "4e3", "2e-3", "2e-5"), ("1e6", "40", "2e-5", "2e-7")):
+        study(f"{number} discs, biaxial to 5 %", "number_of_grains",
+              packed("pack_dense", f"n{number}", f"pack.number={number}"))
+    for ratio, pressure, strain, every in (("1e2", "4e5", "0.2", "2e-3"), ("1e4", "4e3", "2e-3", "2e-5"),
+                                           ("1e6", "40", "2e-5", "2e-7")):
         study(f"kn/(p t) = {ratio}, 400 discs, biaxial to {strain}", "stiffness",
-              packed("pack_dense", f"k{ratio}", f"target.pressure_Pa={pressure}", "target.void_ratio=0.19"), f"test.pressure_Pa={pressure}",
+              packed("pack_dense", f"k{ratio}", f"target.pressure_Pa={pressure}", "target.void_ratio=0.19"),
+              f"test.pressure_Pa={pressure}",
               f"stage.compression.to_strain={strain}", f"stage.compression.record_every={every}")
     study("damping, 400 discs, biaxial to 5 %", "damping", packed("pack_dense", "dense"))
 

@@ -61,14 +61,16 @@ def error_of(compared):
 
 @bars
 def judge(tables):
-    """Prints tables of one recipe, one size after the other: head, number of seeds, rows, tail. A row: its text, strain, height over d,
-    and, compared with oriented cells, p over theirs and the differences of p and sin phi over their standard errors, or nothing."""
+    """Prints tables of one recipe, one size after the other: head, number of seeds, rows, tail. A row: its text,
+    strain, height over d, and, compared with oriented cells, p over theirs and the differences of p and sin phi over
+    their standard errors, or nothing."""
     for k, (head, seeds, rows, tail) in enumerate(tables):
         bar = beyond(2 * seeds - 2)
         print(head, flush=True)
         for text, strain, height, compared in rows:
             apart = bool(compared) and max(map(abs, compared[1:])) > bar
-            others = [(other_height, other) for j, table in enumerate(tables) if j != k for _, at, other_height, other in table[2]
+            others = [(other_height, other) for j, table in enumerate(tables) if j != k
+                      for _, at, other_height, other in table[2]
                       if at == strain and other and other_height >= 10]
             same = [(at, other) for at, other in others
                     if apart and abs(other[0] - compared[0]) <= 3 * np.hypot(error_of(compared), error_of(other))]
@@ -81,7 +83,8 @@ def judge(tables):
 
 
 def packed(recipe, *settings):
-    made = harness.packed(recipe, "_".join([recipe, *(each.split("=")[1] for each in settings)]), *settings, options=("--threads", 1))
+    made = harness.packed(recipe, "_".join([recipe, *(each.split("=")[1] for each in settings)]), *settings,
+                          options=("--threads", 1))
     return made if made.exists() else min(work.glob(made.stem + "_*Pa.h5"))
 
 

@@ -78,7 +78,8 @@ def main():
         rvelab("export", test, "--format", "xdmf", "-o", out, "--force")
         shown = answer("inspect", test)
         lattice, stress = numpy.array(shown["rotation"]) @ numpy.array(shown["lattice_m"]), numpy.array(shown["stress_Pa"])
-        for kind, reader in (("XDMFReader", XDMFReader(FileNames=[str(out)])), ("Xdmf3ReaderT", Xdmf3ReaderT(FileName=[str(out)]))):
+        for kind, reader in (("XDMFReader", XDMFReader(FileNames=[str(out)])),
+                             ("Xdmf3ReaderT", Xdmf3ReaderT(FileName=[str(out)]))):
             UpdatePipeline(proxy=reader)
             check(reader, shown["grains"], shown["contacts"], dimension, lattice, stress)
             print(f"xdmf: {name}: {kind} found {shown['grains']} grains, {shown['contacts']} contacts, the cell, the stress")

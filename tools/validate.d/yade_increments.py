@@ -89,7 +89,8 @@ def fineness(point):
 
 def run(*command):
     """On one core, in WORK."""
-    return harness.run("taskset", "-c", max(os.sched_getaffinity(0)), *command, cwd=work, env=dict(os.environ, OMP_NUM_THREADS="1")).stdout
+    return harness.run("taskset", "-c", max(os.sched_getaffinity(0)), *command, cwd=work,
+                       env=dict(os.environ, OMP_NUM_THREADS="1")).stdout
 
 
 def scene(*arguments):
@@ -107,7 +108,8 @@ def of_yade(base, points, repeats, **more):
 
 
 def of_rvelab(name, settings, repeats, **more):
-    return json.loads(run(program.with_name("rvelab-increments"), f"{name}.h5", job({"settings": settings, "repeats": repeats, **more})))
+    return json.loads(run(program.with_name("rvelab-increments"), f"{name}.h5",
+                          job({"settings": settings, "repeats": repeats, **more})))
 
 
 def state_of(name):
@@ -117,7 +119,8 @@ def state_of(name):
     if strain:
         parent, base = base, work / name
         scene("biaxial", parent, base, strain)
-    run(program, "import", f"{base}.particles.csv", f"{base}.contacts.csv", f"{base}.json", "-o", f"{name}.h5", "--force",
+    run(program, "import", f"{base}.particles.csv", f"{base}.contacts.csv", f"{base}.json", "-o", f"{name}.h5",
+        "--force",
         "--set", "contact.slip=full_radius_ratcheting")
     return base
 
