@@ -29,16 +29,15 @@ def of_mpm(name, minutes, about, check, words="", **more):
 
 def increments(name, minutes, about, numbers):
     """rvelab-estimates of packings drawn by seed."""
-    return Part(name, minutes, about, f"bin/rvelab-estimates {numbers} $work/{name}".replace("bin/",
-                                                                                             "build/release/bin/"),
-                                                                                             targets="rvelab-estimates")
+    return Part(name, minutes, about, f"build/release/bin/rvelab-estimates {numbers} $work/{name}",
+                targets="rvelab-estimates")
 
 
 PARTS = [
     Part("kills", 10, "1000 kills, and what is there afterwards",
          "echo '1000 kills (RVELAB_KILLS=1000 build/release/bin/test_kill)'\n"
          "RVELAB_KILLS=1000 build/release/bin/test_kill", targets="test_kill"),
-    Part("memory", 3, "memory that runs out at each request of each call of the C interface", targets="test_abi", command=r"""
+    Part("memory", 20, "memory that runs out at each request of each call of the C interface", targets="test_abi", command=r"""
          RVELAB_MEMORY_STRIDE=1 build/release/bin/test_abi "Without memory*" -s |
            awk '/CHECK_THAT/ {on = 1; print ""} /with message/ {on = 0} on && /requests/ {sub(/^ *"?/, ""); print}
                 /^All tests|^test cases/'"""),
@@ -117,7 +116,7 @@ PARTS = [
          "bonds and bridges beside YADE and LAMMPS; RVELAB_LAMMPS: one with BPM and GRANULAR, else it is built",
          "check interactions_peers $work/interactions_peers ${RVELAB_LAMMPS:-}\n"
          "tools/bench/interactions $program ${RVELAB_LAMMPS:-$work/interactions_peers/lammps/src/lmp_serial}",
-         packages="yade make xz-utils", times=True),
+         packages="yade make xz-utils", targets="rvelab_shared", times=True),
     Part("yade_increments", 60, "error against processor time of an increment, from states of YADE's packings",
          packages="yade",
          targets="rvelab-increments", needs="../shared/reference/yade/packings", times=True),
@@ -157,7 +156,7 @@ PARTS = [
          cmake --build build/unoptimised --parallel $jobs --target test_extreme | tail -n 1
          same_stresses unoptimised 60"""),
     Part("bits", 3, "every result against hashes that are kept; tools/validate.d/bits.py ... --write keeps new ones",
-         "$python tools/validate.d/bits.py $program $work/bits tools/validate.d/results/bits.json"),
+         "$python tools/validate.d/bits.py $program $work/bits tools/validate.d/results/bits.json", targets="test_extreme"),
     of_mpm("mpm", 5, "speed of the continuum, and the single element", "mpm", times=True),
     of_mpm("mpm_biaxial", 180, "compression over four meshes; RVELAB_MPM_CASES: others (C1: the file without a case)",
            "mpm",
@@ -209,7 +208,7 @@ PARTS = [
          targets="rvelab-mpm", times=True),
     Part("wasm", 30,
          "the laboratory as WebAssembly has the bits of the native program; emscripten, node, npm's registry",
-         "tools/web/build && tools/web/check-bits", by_name=True, kept=False),
+         "tools/web/build && tools/web/check-bits", targets="rvelab-end-state", by_name=True, kept=False),
 ]
 BY_NAME = {part.name: part for part in PARTS}
 
