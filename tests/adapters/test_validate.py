@@ -156,8 +156,8 @@ class Kept(Bench):
 
     def test_a_table_with_missed_bars_is_kept_and_told(self) -> None:
         self.write_check(13)
-        told = self.make(f"PYTHONPATH={checks} {sys.executable} -B {self.check} {self.program} {work}/w $results")
-        self.assertIn("missed", told)
+        reported = self.make(f"PYTHONPATH={checks} {sys.executable} -B {self.check} {self.program} {work}/w $results")
+        self.assertIn("missed", reported)
         self.assertIn("MISSED", self.text())
         self.assertEqual(json.loads((work / "results/tables/one.json").read_text())["entries"][1]["figures"], [13])
 

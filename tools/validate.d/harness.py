@@ -86,9 +86,9 @@ def once(out, *command, make=None, resume=False, codes=(0,)):
     if mark.exists() and mark.read_text() == asked and (out.exists() or family()):
         return out
     begun = out.with_name(out.name + ".begun")
-    goes_on = resume and begun.exists() and begun.read_text() == asked
+    continued = resume and begun.exists() and begun.read_text() == asked
     mark.unlink(missing_ok=True)
-    if not goes_on:
+    if not continued:
         shutil.rmtree(out, ignore_errors=True)
         for left in (out, out.with_name(out.name + ".journal"), *family()):
             left.unlink(missing_ok=True)

@@ -107,7 +107,7 @@ def specimen(program, folder, largest, law):
 
 
 def of_lammps(folder, lmp, law, x, r, edge, time_step):
-    """Positions and forces, from the same places: at once, and at rest under the strain."""
+    """Positions and forces, from the same positions: at once, and at rest under the strain."""
     inside = x - edge * np.floor(x / edge + 0.5)
     lines = ["sticky packing", "", f"{len(x)} atoms", "1 atom types",
              *(f"{-0.5 * edge!r} {0.5 * edge!r} {c}lo {c}hi" for c in "xyz"), "", "Atoms # sphere", ""]

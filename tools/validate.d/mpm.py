@@ -7,7 +7,7 @@
 Speed of the continuum (asked: 2 M point-steps a second of one core in the plane) and the single element beside the
 biaxial test of its specimen (stress and volume). `biaxial`: compression in the cases named (C1: the file without a
 case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and gathering. Runs that are whole
-in FOLDER are used again, and those that were stopped go on. Other scenes: mpm_scenes.py."""
+in FOLDER are used again, and those that were stopped are continued. Other scenes: mpm_scenes.py."""
 
 import resource
 import shutil
@@ -22,18 +22,18 @@ folder = work
 
 
 def run(name, scene, *options):
-    """Runs a scene into WORK/name unless it is there and whole, or goes on with one that was stopped; its history by
+    """Runs a scene into WORK/name unless it is there and whole, or continues one that was stopped; its history by
     columns, and what it printed."""
     printed, warned, scene = work / f"{name}.txt", work / f"{name}.warnings", PROTOCOLS / "mpm" / scene
     command = [scene, "--specimens", work, "-q", *options]
 
     def make(out):
-        goes_on = (out / "checkpoint.h5").exists()
-        if not goes_on:
+        continued = (out / "checkpoint.h5").exists()
+        if not continued:
             shutil.rmtree(out, ignore_errors=True)
-        done = harness.run(mpm, *(("--resume", out, "-q") if goes_on else (*command, "-o", out)))
+        done = harness.run(mpm, *(("--resume", out, "-q") if continued else (*command, "-o", out)))
         for path, text in ((printed, done.stdout), (warned, done.stderr)):
-            with path.open("a" if goes_on else "w") as file:
+            with path.open("a" if continued else "w") as file:
                 file.write(text)
 
     once(work / name, *command, make=make, resume=True)
@@ -43,7 +43,7 @@ def run(name, scene, *options):
 
 
 def with_soil(name, scene, soil, *edits):
-    """WORK/name.toml: a scene without its cases, with a continuum in the place of its grains, and further edits (old,
+    """WORK/name.toml: a scene without its cases, with a continuum instead of its grains, and further edits (old,
     new)."""
     text = (PROTOCOLS / "mpm" / scene).read_text().split("\n[case.")[0]
     begin, end = text.index("[[material]]"), text.index("[[region]]")

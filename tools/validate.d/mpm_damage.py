@@ -3,7 +3,7 @@
 
 Runs of grains, dry and saturated, and one with a rock are stopped, rows that a kill might have left are added, and one bit at a time is
 flipped, seeded, NUMBER (1000) in each file that --resume reads. Each must be refused (exit code 2, one line that names
-the file) or be without effect: the run goes on to the same bytes."""
+the file) or be without effect: the run continues to the same bytes."""
 
 import random
 import shutil
@@ -16,13 +16,13 @@ SCENES = {"dry": ("element", "0.1", "0.13"), "saturated": ("undrained_element", 
           "rocks": ("block_slide", "0.002", "0.0022")}  # stopped, end; s
 
 
-def resume(place):
-    done = run(mpm, "--resume", place, "-q", "-j", "1", codes=None, timeout=300, errors="replace")
+def resume(folder):
+    done = run(mpm, "--resume", folder, "-q", "-j", "1", codes=None, timeout=300, errors="replace")
     return done.returncode, done.stderr
 
 
-def outcome(place):
-    return {path.name: path.read_bytes() for path in sorted(place.iterdir())}
+def outcome(folder):
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
 def main():
@@ -34,10 +34,10 @@ def main():
     return bad
 
 
-def flipped(place, scene, stop, duration):
+def flipped(folder, scene, stop, duration):
     """How many flips were neither refused nor without effect."""
-    shutil.rmtree(place, ignore_errors=True)
-    kept, again = place / "kept", place / "run"
+    shutil.rmtree(folder, ignore_errors=True)
+    kept, again = folder / "kept", folder / "run"
     run(mpm, scene, "-o", kept, "--specimens", work, "-q", "-j", "1", "--stop-at", stop,
         *sets(f"time.duration_s={duration}", f"output.history_every_s={float(stop) / 10}"))
     for name in ("history.csv", "watched.csv"):

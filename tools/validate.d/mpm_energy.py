@@ -34,9 +34,9 @@ NUMBER = re.compile(r"(?<![\w.\"])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.\"])")
 
 def mutated(text, rng):
     """One to three numbers of the scene changed; the others, and all words, stay."""
-    places = [found for found in NUMBER.finditer(text) if "dimension" not in text[text.rfind("\n", 0, found.start()):found.start()]]
+    numbers = [found for found in NUMBER.finditer(text) if "dimension" not in text[text.rfind("\n", 0, found.start()):found.start()]]
     changed = []
-    for found in sorted(rng.sample(places, rng.randint(1, 3)), key=lambda each: -each.start()):
+    for found in sorted(rng.sample(numbers, rng.randint(1, 3)), key=lambda each: -each.start()):
         value = float(found.group())
         kind = rng.random()
         if kind < 0.7:

@@ -7,7 +7,7 @@ Published: Liang, Zhao, Wu, Zhao and Wang (2023, Comput. Methods Appl. Mech. Eng
 asked for, verdict. consolidation: the specimen's own modulus and the exact answer of the two-phase equations.
 undrained, undrained_64, drained, cyclic: blocks beside the test of their specimen. mandel: the analytic answer.
 column, wave, wave_far, scan: trends that the paper describes, at reduced size; shaking: the same, hours. Runs that are whole in FOLDER are used
-again, and those that were stopped go on."""
+again, and those that were stopped are continued."""
 
 import harness
 from mpm import plot_style

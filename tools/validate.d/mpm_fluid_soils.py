@@ -225,7 +225,7 @@ def shaken(name):
     late = t > 0.75 * end
     ratios = [moving_mean(w[f"{k}.pore_pressure_ratio"], rows_in(t, PERIOD)) for k in (0, 1, 2)]
     onset = [next((float(time) for time, ratio in zip(t, r) if ratio > 0.05), np.inf) for r in ratios]
-    # Stress and place of B in each frame; the watched point is the nearest one.
+    # Stress and position of B in each frame; the watched point is the nearest one.
     times, shear, aside, contacts = [], [], [], []
     with h5py.File(frames(name)[0]) as file:
         at = file["position_m"][()]

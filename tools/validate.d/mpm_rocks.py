@@ -200,7 +200,7 @@ def boulders():
         harness.run(mpm, "--resume", out, "-q")
 
     once(folder / name, "boulders, stopped at 1.2 s", make=stopped)
-    # The checkpoint tells when the next one is due: a stop is one more.
+    # The checkpoint says when the next one is due: a stop is one more.
     count, differ = same_files("boulders", name)
     verdict(f"stopped at 1.2 s and resumed: files that differ, of {count}", str(len(differ)), "0", not differ)
     largest = h["rocks.kinetic_J"].max()
@@ -275,7 +275,7 @@ def cost():
             name = f"field_{contact}_{count}"
             scene = folder.resolve() / f"{name}.toml"
             scene.write_text(FIELD.format(contact=contact, sides=sides, share=count * np.pi / 6 * 0.027 / box))
-            for each in (name, name + "_two"):  # times of one program: made anew
+            for each in (name, name + "_two"):  # times of one program: made again
                 (folder / f"{each}.whole").unlink(missing_ok=True)
             h, printed = run(name, scene, "-j", "1")
             points, rocks, soil, rate = shares(printed)

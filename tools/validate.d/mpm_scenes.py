@@ -6,7 +6,7 @@ column: run-out, energies and profile of the collapse of columns of a Mohr-Coulo
 against settlement on three soils, beside the N_q of `rvelab calibrate`. pipe: forces on a pipe that is pushed down and
 aside, and what the soil before, below and behind it does; pipe_soil: the same in Mohr-Coulomb soil over meshes and
 strengths. footing_published_5: dense soil of seed 5, whose strength is the paper's, at the published size. Runs that are whole in FOLDER are used again, and those that
-were stopped go on."""
+were stopped are continued."""
 
 import h5py
 import numpy as np

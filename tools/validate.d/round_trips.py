@@ -70,9 +70,9 @@ def stated(path, style):
         names = lines[head + 4].split()[2:]
         rows = numpy.array([line.split() for line in lines[head + 5:]], float)
         suffix = {"unwrapped": "u", "scaled": "s"}.get(style, "")
-        place = rows[:, [names.index(axis + suffix) for axis in "xyz"]]
+        position = rows[:, [names.index(axis + suffix) for axis in "xyz"]]
         radius = rows[:, names.index("radius")] if "radius" in names else rows[:, names.index("diameter")] / 2
-        atoms = numpy.column_stack([rows[:, 0], place, radius])
+        atoms = numpy.column_stack([rows[:, 0], position, radius])
     cell = numpy.diag(bounds[:, 1] - bounds[:, 0])
     cell[0, 1], cell[0, 2], cell[1, 2] = tilt
     if style == "scaled":

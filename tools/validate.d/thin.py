@@ -8,9 +8,9 @@ pure: upright and oriented specimens of discs, compressed at constant volume to 
 dt > 0 and at dt = 0, at dt = 0 of pack_medium and pack_dense 20 each of 400 grains and ten of 1600: heights of the upright
 cell, p and sin phi by strain, of the records that are not flagged as thin; which are.
 
-Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and told, and p and sin phi of
+Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and reported, and p and sin phi of
 the others are as in oriented cells, as far as means of so many specimens tell; below ten mean diameters they are off, and the
-run tells of a low cell. Where a higher cell differs by as much at the same strain (1600 grains beside 400), it is no matter of the
+run warns of a low cell. Where a higher cell differs by as much at the same strain (1600 grains beside 400), it is no matter of the
 height: the row says DIFFERS.
 """
 import time

@@ -14,7 +14,7 @@ within it too, so that no chance zero of an error wins.
 
 Both are timed on one core, stepping only, processor time, in rounds in turn; a ratio is one within a round. `restored`:
 from a copy of the state, YADE by O.run, as its coupling does and as the recorded points of YADE were taken. `going on`:
-with what only the first step or call after that does (YADE sorts all grains anew, rvelab scales the masses) done before,
+with what only the first step or call after that does (YADE sorts all grains again, rvelab scales the masses) done before,
 and YADE by O.step, without the thread that O.run starts: what the steps themselves cost.
 """
 import argparse
