@@ -134,22 +134,22 @@ def test(program, protocol, specimen, settings):
     return errors, substeps, degrees_of(major[peak], minor[peak]), "" if done.returncode == 0 else done.stderr
 
 
-def line(program, name, files, label):
-    protocol = "triaxial" if name in SPHERES else "biaxial"
-    errors, substeps, angles, ended = [], [], [], []
-    for file in files:
-        for pressure in RECIPES[name][2]:
-            e, s, angle, end = test(program, protocol, file, [f"test.pressure_Pa={pressure}"])
-            errors.append(e), substeps.append(s), angles.append(angle)
-            if end:
-                ended.append(end.strip()[-300:])
-    e, s = np.concatenate(errors), np.concatenate(substeps)
+def row(head, files, made, angles=False):
+    """Prints a row of tests (what test() gives of each); how many records and tests missed a bar."""
+    e, s = np.concatenate([each[0] for each in made]), np.concatenate([each[1] for each in made])
+    phi, ended = [each[2] for each in made], [each[3].strip()[-300:] for each in made if each[3]]
     off = int((e > TOLERANCE).sum())
-    print(f"{name:13} {label:7} {len(files):5} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
-          f"{s.max():10.4g} {np.nanmean(angles):8.2f} +- {np.nanstd(angles, ddof=1):5.2f}", flush=True)
+    print(f"{head} {len(files):4} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
+          + (f"{s.max():10.4g} {np.nanmean(phi):8.2f} +- {np.nanstd(phi, ddof=1):5.2f}" if angles else f"{s.max():12.4g}"), flush=True)
     for text in ended:
         print(f"#   {text}")
     return off + len(ended)
+
+
+def line(program, name, files, label):
+    protocol = "triaxial" if name in SPHERES else "biaxial"
+    return row(f"{name:13} {label:7} ", files, [test(program, protocol, file, [f"test.pressure_Pa={pressure}"])
+                                                for file in files for pressure in RECIPES[name][2]], True)
 
 
 def others(program):
@@ -158,14 +158,8 @@ def others(program):
     for protocol, recipes, pressure, settings in OTHERS:
         for name in recipes:
             files = specimens(program, name, 3)
-            made = [test(program, protocol, file, [f"test.pressure_Pa={pressure}", *settings]) for file in files]
-            e, s = np.concatenate([each[0] for each in made]), np.concatenate([each[1] for each in made])
-            ended, off = [each[3].strip()[-300:] for each in made if each[3]], int((e > TOLERANCE).sum())
-            print(f"{protocol:22} {name:8} {len(files):4} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
-                  f"{s.max():12.4g}", flush=True)
-            for text in ended:
-                print(f"#   {text}")
-            missed += off + len(ended)
+            missed += row(f"{protocol:22} {name:8}", files,
+                          [test(program, protocol, file, [f"test.pressure_Pa={pressure}", *settings]) for file in files])
     return missed
 
 
