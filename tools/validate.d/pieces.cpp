@@ -21,7 +21,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <random>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -34,7 +33,7 @@ using namespace rvelab;
 namespace {
 
 constexpr double sizes[] = {1e-4, 1e-5, 1e-6, 1e-7};
-constexpr double by_value = 0.003;         ///< strain
+constexpr double by_value = 0.003;  ///< strain
 constexpr int quarters = 4, pauses = 100;
 constexpr double quarter_length = 2.5e-3;
 constexpr double displacement = 5e-7;  ///< over the radius
@@ -132,8 +131,8 @@ double standard_error(const std::vector<Run>& runs, int quarter) {
   return std::sqrt(square / double(runs.size() - 1) / double(runs.size()));
 }
 
-/// A line for each size: name, size, sub-steps, processor time (s), and of each quarter point error, its standard error and the
-/// tolerance, over p.
+/// A line for each size: name, size, sub-steps, processor time (s), and of each quarter point error, its standard error
+/// and the tolerance, over p.
 void measured(const Path& path, const Specimen& specimen, int repeats) {
   const std::vector<Run> references =
       repeated(repeats, [&](std::uint64_t seed) { return resolved(path, moved(specimen, seed)); });
