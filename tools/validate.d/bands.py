@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Shear bands of a biaxial test: bands.py PROGRAM FOLDER [SPECIMENS]
+"""Shear bands of a biaxial test: bands.py PROGRAM WORK RESULTS [SPECIMENS]
 
 Dense discs at 100 kPa (8 specimens), probed at eight strains before, at and after the peak of the mean curve, by
   loading   increments that go on in the direction of the test (rvelab probe R.h5 --bands)
@@ -12,34 +11,24 @@ Bars: of the loading probes the mean det falls below 5 % of the elastic one at t
 with the band between Roscoe and Coulomb to three standard errors.
 """
 
-import json
 import math
-import pathlib
-import statistics
-import subprocess
-import sys
 
 import numpy as np
 
-program = str(pathlib.Path(sys.argv[1]).resolve())
-folder = pathlib.Path(sys.argv[2])
-count = int(sys.argv[3]) if len(sys.argv) > 3 else 8
+import harness
+from harness import answer, mean_error, once, packed, sets, work
+
+count = int(harness.words[0]) if harness.words else 8
 STRAINS = (0.0005, 0.003, 0.006, 0.01, 0.015, 0.02, 0.03, 0.05)
 
 
-def rvelab(*words):
-    return json.loads(subprocess.run([program, *map(str, words), "--json"], check=True, capture_output=True, text=True).stdout)
+def specimen(number):
+    return packed("pack_dense", f"S_{number}", f"pack.seed={number}")
 
 
 def test(number, strain):
-    file = folder / f"R_{number}_{strain:g}.h5"
-    specimen = folder / f"S_{number}.h5"
-    if not specimen.exists():
-        rvelab("pack", "pack_dense", "-o", specimen, "--set", f"pack.seed={number}")
-    if not file.exists():
-        rvelab("run", "biaxial", "--specimen", specimen, "-o", file, "--set", "test.pressure_Pa=1e5", "--set",
-               f"stage.compression.to_strain={strain}")
-    return file
+    return once(work / f"R_{number}_{strain:g}.h5", "run", "biaxial", "--specimen", specimen(number),
+                *sets("test.pressure_Pa=1e5", f"stage.compression.to_strain={strain}"))
 
 
 def least_determinant(stiffness):
@@ -53,22 +42,17 @@ def least_determinant(stiffness):
     return best
 
 
-def mean_error(values):
-    return statistics.mean(values), statistics.stdev(values) / math.sqrt(len(values)) if len(values) > 1 else math.nan
-
-
 def main():
-    folder.mkdir(parents=True, exist_ok=True)
     numbers = range(1, count + 1)
-    start = {n: least_determinant(rvelab("probe", folder / f"S_{n}.h5", "--method", "linear")["stiffness_Pa"]) for n in numbers
-             if test(n, STRAINS[0])}
+    start = {n: least_determinant(answer("probe", specimen(n), "--method", "linear")["stiffness_Pa"]) for n in numbers}
     rows = []
     print(f"{count} specimens of 400 dense discs, biaxial at 100 kPa: mean +- standard error")
     print("strain    q/p   | loading: det/elastic     det/start  work/elastic  band angle    | averaged: det    work  angle  "
           "| Roscoe Arthur Coulomb")
     for strain in STRAINS:
-        loading = [rvelab("probe", test(n, strain), "--bands") for n in numbers]
-        averaged = [rvelab("probe", test(n, strain), "--bands", "--method", "dynamic", "--size", "1e-3") for n in numbers]
+        loading = [answer("probe", test(n, strain), "--bands") for n in numbers]
+        averaged = [answer("probe", test(n, strain), "--bands", "--method", "dynamic", "--size", "1e-3")
+                    for n in numbers]
         from_start = mean_error([least_determinant(each["stiffness_Pa"]) / start[n] for n, each in zip(numbers, loading)])
 
         def of(answers, key):
@@ -89,8 +73,8 @@ def main():
             (f"band angle at the peak between {roscoe:.1f} (Roscoe) and {coulomb:.1f} (Coulomb), to 3 standard errors", angle[0],
              roscoe - 3 * angle[1] <= angle[0] <= coulomb + 3 * angle[1])]
     for what, value, met in bars:
-        print(f"{what}: {value:.3f}  {'ok' if met else 'MISSED'}")
-    return sum(not met for *_, met in bars)
+        harness.row(f"{what}: {value:.3f} ", met, good="ok")
 
 
-sys.exit(1 if main() else 0)
+if __name__ == "__main__":
+    harness.main(main)

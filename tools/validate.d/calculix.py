@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """tools/validate calculix: CalculiX with RVEs in its integration points, end to end, beside the cell alone.
 
 CalculiX is built from Debian's source with external behaviours (its Debian program ignores them without a word) and
@@ -8,17 +7,20 @@ geometry nonlinear. One element of eight points to 1 %, a block of a hundred ele
 of strain, and within 3 % beyond, where two cells one bit apart differ by as much. Printed besides: wall time, iterations
 and calls of the material per increment.
 
-    tools/validate.d/calculix.py RVELAB FOLDER [CCX]      # CCX: a program that was built before
+    calculix.py RVELAB WORK RESULTS [CCX]      # CCX: a program that was built before
 """
 import os
 import pathlib
 import re
 import subprocess
-import sys
 import time
 
-import h5py
 import numpy as np
+
+import debian_source
+import harness
+from harness import once, records, sets
+from harness import work as folder
 
 PRESSURE, STEP = 1e5, 2.5e-4
 VERSION = "2.20"
@@ -34,26 +36,16 @@ include Makefile.inc
 ccx: ccx_{VERSION}.o $(SCCXF:.f=.o) $(SCCXC:.c=.o)
 \tgfortran -fopenmp -o $@ $^ -lspooles -larpack -llapack -lblas -lpthread -lm -lc -ldl
 """
-SOURCES = "Types: deb-src\nURIs: http://deb.debian.org/debian\nSuites: bookworm\nComponents: main\n"
 
 
-def built(folder):
+def built():
     """CalculiX with external behaviours, from Debian's source package."""
     program = folder / "calculix" / f"ccx_{VERSION}" / "src" / "ccx"
-    if program.exists():
-        return program
-    lists = folder / "lists"
-    (lists / "partial").mkdir(parents=True, exist_ok=True)
-    (folder / "source.sources").write_text(SOURCES + "Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg\n")
-    apt = ["apt-get", "-qq", "-o", f"Dir::Etc::SourceList={folder / 'none'}", "-o",
-           f"Dir::Etc::SourceParts={folder}", "-o", f"Dir::State::Lists={lists}"]
-    subprocess.run([*apt, "update"], check=True)
-    subprocess.run([*apt, "source", "--download-only", "calculix-ccx"], cwd=folder, check=True)
-    package = next(folder.glob("calculix-ccx_*.dsc"))
-    subprocess.run(["dpkg-source", "-x", package, folder / "calculix"], check=True, capture_output=True)
-    (program.parent / "Makefile.external").write_text(MAKEFILE)
-    subprocess.run(["make", f"-j{os.cpu_count()}", "-f", "Makefile.external", "ccx"], cwd=program.parent, check=True,
-                   capture_output=True)
+    if not program.exists():
+        debian_source.download("calculix-ccx", "bookworm", folder)
+        harness.run("dpkg-source", "-x", next(folder.glob("calculix-ccx_*.dsc")), folder / "calculix")
+        (program.parent / "Makefile.external").write_text(MAKEFILE)
+        debian_source.make(program.parent, "-f", "Makefile.external", "ccx")
     return program
 
 
@@ -92,39 +84,34 @@ def deck(n, increments):
     return "\n".join(lines) + "\n"
 
 
-def axial_stress(results):
+def axial_stress(printed):
     """Mean axial stress of all points at the end of each increment, Pa, compression positive; its time."""
     found = []
-    for block in re.split(r" stresses .* time ", results)[1:]:
+    for block in re.split(r" stresses .* time ", printed)[1:]:
         rows = [line.split() for line in block.splitlines()[1:] if len(line.split()) == 8]
         found.append((float(block.split()[0]), -np.mean([float(row[3]) for row in rows])))
     return np.array(found)
 
 
-def alone(program, folder, strain):
-    """The same test of the cell alone."""
-    output = folder / "alone.h5"
-    subprocess.run([program, "run", "biaxial", "--specimen", folder / "S.h5", "--set", f"test.pressure_Pa={PRESSURE}",
-                    "--set", f"stage.compression.to_strain={strain}", "--set", f"stage.compression.record_every={STEP}",
-                    "-o", output, "--force"], check=True, capture_output=True)
-    with h5py.File(output) as file:
-        # Strains of a protocol are of the first height, as the host's displacement is.
-        return file["records/strain"][:], -file["records/stress_Pa"][:, 1, 1]
+def alone(strain):
+    """The same test of the cell alone. Strains of a protocol are of the first height, as the host's displacement is."""
+    output = once(folder / "alone.h5", "run", "biaxial", "--specimen", folder / "S.h5",
+                  *sets(f"test.pressure_Pa={PRESSURE}", f"stage.compression.to_strain={strain}",
+                        f"stage.compression.record_every={STEP}"))
+    found = records(output, "strain", "stress_Pa")
+    return found["strain"], -found["stress_Pa"][:, 1, 1]
 
 
 def main():
-    program = pathlib.Path(sys.argv[1]).resolve()
-    folder = pathlib.Path(sys.argv[2]).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    ccx = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else built(folder)
-    library = program.parents[1] / "lib"
+    ccx = pathlib.Path(harness.words[0]).resolve() if harness.words else built()
+    library = harness.program.parents[1] / "lib"
     link = folder / "libRVELAB.so"
     link.unlink(missing_ok=True)
     link.symlink_to(library / "librvelab_umat.so")
     (folder / "rvelab_umat.toml").write_text('[[material]]\nnumber = 1\nspecimen = "S.h5"\n')
     (folder / "rvelab_umat.log").unlink(missing_ok=True)
-    subprocess.run([program, "pack", "pack_dense", "-o", folder / "S.h5", "--force"], check=True, capture_output=True)
-    strain, stress = alone(program, folder, 0.0101)
+    harness.packed("pack_dense", "S")
+    strain, stress = alone(0.0101)
     good = True
     print("elements  RVEs  strain  increments  iterations  calls of a point an increment  wall time (s)  "
           "axial stress less that of the cell alone, over the pressure: to 0.3 % of strain, to the end")
@@ -150,8 +137,8 @@ def main():
         good &= small <= 0.01 and large <= 0.03 and len(found) == increments
         print(f"{n * n:<9} {points:<5} {reached:<7g} {len(found):<11} {np.mean(iterations):<11.2f} {calls:<30.2f} "
               f"{seconds:<14.1f} {small:.4f}, {large:.4f}", flush=True)
-    return 0 if good else 1
+    return not good
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    harness.main(main)

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """Liquid bridges: the table of the laboratory's law, and how well laws of bridges meet the Young-Laplace equation.
 
-    capillary.py table rvelab/interaction/bridge_table.hpp   writes the table (half a minute)
-    capillary.py rows tests/data/interaction/bridges.csv     exact bridges off the table's points, for the test
-    capillary.py compare [ROWS.csv ...]                      errors of the laws; ROWS as tests/data/interaction/young_laplace.csv
+    capillary.py PROGRAM WORK RESULTS table rvelab/interaction/bridge_table.hpp   writes the table (half a minute)
+    capillary.py PROGRAM WORK RESULTS rows tests/data/interaction/bridges.csv     exact bridges off the table's points, for the test
+    capillary.py PROGRAM WORK RESULTS compare [ROWS.csv ...]                      errors of the laws; ROWS as tests/data/interaction/young_laplace.csv
 
 The table holds, of bridges of given volume, rupture gap over V^(1/3), force over 1 - gap/h and suction times h, h the height of
 the toroid's meniscus; of bridges of given suction, rupture gap over h, force and volume over h^2. Each is a series of
@@ -14,7 +13,7 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import harness
 from young_laplace import bridge, chebyshev_points, contact_guess, curves, pi, sampled, solve
 
 chebyshev = np.polynomial.chebyshev.chebvander
@@ -307,13 +306,15 @@ def write_rows(path):
                         f.write(kind + "," + ",".join(f"{x:.9g}" for x in row) + "\n")
 
 
-if __name__ == "__main__":
-    words = sys.argv[1:]
-    if words[:1] == ["table"] and len(words) == 2:
-        write_table(words[1])
-    elif words[:1] == ["rows"] and len(words) == 2:
-        write_rows(words[1])
-    elif words[:1] == ["compare"]:
-        compare(words[1:])
+def main():
+    kind, *paths = harness.words or [""]
+    if kind in ("table", "rows") and len(paths) == 1:
+        (write_table if kind == "table" else write_rows)(paths[0])
+    elif kind == "compare":
+        compare(paths)
     else:
         sys.exit("capillary: give table FILE, rows FILE or compare [ROWS.csv ...]\n" + __doc__)
+
+
+if __name__ == "__main__":
+    harness.main(main)

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Cemented grains in ensembles: cemented.py RVELAB WORK [FIGURE] [--count N].
+"""Cemented grains in ensembles: cemented.py RVELAB WORK RESULTS [SPECIMENS].
 
 Five specimens each of 400 discs (pack_dense, biaxial) and of 500 spheres (triaxial), cemented by `kind = "cement"` with tensile
 strength and cohesion of the cement alike, at several strengths and pressures; beside each the same specimens without cement.
@@ -16,83 +15,47 @@ Published statements that stand beside them, with limits as set before the runs:
   Wang and Leung 2008, as those report: with more cement hardening becomes softening, contraction dilation;
   de Bono, McDowell, Wanatowski 2014 (Granul. Matter 16, 563-572), of laboratory studies: cement lowers the strain of the peak.
 """
-import pathlib
-import subprocess
-
-import h5py
-import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import part
-from verdict import tell_verdicts
-from verdict import verdict as row_of_verdict
+import harness
+from harness import PROTOCOLS, envelope, in_words, mean_error, once, protocol_without, records, results, sets, specimens, work
 
-PROTOCOLS = pathlib.Path("protocols").resolve()
-BIAXIAL = {"protocol": "biaxial_cemented", "pack": ["pack_dense"], "pressures": (20e3, 40e3, 80e3, 160e3), "axis": 1,
+plt = harness.pyplot()
+COUNT = int(harness.words[0]) if harness.words else 5
+BIAXIAL = {"protocol": "biaxial_cemented", "pack": ("pack_dense",), "pressures": (20e3, 40e3, 80e3, 160e3), "axis": 1,
            "strengths": (0, 100e3, 200e3, 400e3), "set": [], "what": "400 discs"}
-TRIAXIAL = {"protocol": "triaxial_cemented", "pack": ["pack_hertz", "--set", "pack.number=500", "--set", "material.young_modulus_Pa=1e9"],
+TRIAXIAL = {"protocol": "triaxial_cemented", "pack": ("pack_hertz", "pack.number=500", "material.young_modulus_Pa=1e9"),
             "pressures": (50e3, 100e3, 200e3), "axis": 2, "strengths": (0, 200e3, 400e3),
-            "set": ["--set", "stage.compression.record_every=0.0005"], "what": "500 spheres"}
+            "set": ["stage.compression.record_every=0.0005"], "what": "500 spheres"}
 
 
-def verdict(*words):
-    row_of_verdict(*words, width=98)
+def verdict(*words, **more):
+    harness.verdict(*words, width=98, **more)
 
 
-def specimens(program, work, test, count):
-    files = [work / f"{test['protocol']}_{k}.h5" for k in range(1, count + 1)]
-    for seed, path in enumerate(files, 1):
-        if not path.exists():
-            subprocess.run([program, "pack", *test["pack"], "-o", path, "--set", f"pack.seed={seed}"], check=True,
-                           capture_output=True)
-    return files
-
-
-def without_cement(work, test):
-    """The protocol of `test` less its stage of cement."""
-    stages = (PROTOCOLS / f"{test['protocol']}.toml").read_text().split("[[stage]]")
-    path = work / f"{test['protocol']}_dry.toml"
-    path.write_text("[[stage]]".join(each for each in stages if 'kind = "cement"' not in each))
-    return path
-
-
-def run(program, work, test, specimen, pressure, strength, young_modulus=50e6):
-    """Records of the compression."""
+def run(test, specimen, pressure, strength, young_modulus=50e6):
+    """Of the compression: arrays of strain, sigma_1, sigma_3, volume strain (expansion positive), broken bonds."""
     stiff = "" if young_modulus == 50e6 else f"_{young_modulus:g}"
-    out = work / f"{specimen.stem}_{pressure:g}_{strength:g}{stiff}_records.h5"
-    settings = ["--set", f"test.pressure_Pa={pressure:g}", *test["set"]]
-    protocol = without_cement(work, test) if strength == 0 else PROTOCOLS / f"{test['protocol']}.toml"
+    protocol, cement = protocol_without(test["protocol"], "cement"), []
     if strength > 0:
-        settings += ["--set", f"stage.cement.tensile_strength_Pa={strength:g}", "--set", f"stage.cement.cohesion_Pa={strength:g}",
-                     "--set", f"stage.cement.young_modulus_Pa={young_modulus:g}"]
-    if not out.exists():
-        done = subprocess.run([program, "run", protocol, "--specimen", specimen, "-o", out, *settings], capture_output=True, text=True)
-        if not out.exists():
-            raise SystemExit(f"{out}: {done.stderr}")
-    return curve(out, test["axis"])
-
-
-def curve(path, axis):
-    """Of one test: arrays of strain, sigma_1, sigma_3, volume strain (expansion positive), broken bonds."""
-    with h5py.File(path) as file:
-        records = file["records"]
-        stage = records["stage"][:]
-        last = stage == stage.max()
-        stress = -records["stress_Pa"][:][last]
-        dimension = 2 if axis == 1 else 3
-        side = [k for k in range(dimension) if k != axis]
-        void_ratio = records["void_ratio"][:][last]
-        read = {name: records[name][:][last] for name in ("bonds", "bonds_broken_in_tension", "bonds_broken_in_shear")}
-        return {"strain": records["strain"][:][last], "sigma_1": stress[:, axis, axis],
-                "sigma_3": stress[:, side, side].mean(axis=1), "eps_v": (void_ratio - void_ratio[0]) / (1 + void_ratio[0]), **read}
+        protocol = PROTOCOLS / f"{test['protocol']}.toml"
+        cement = [f"stage.cement.tensile_strength_Pa={strength:g}", f"stage.cement.cohesion_Pa={strength:g}",
+                  f"stage.cement.young_modulus_Pa={young_modulus:g}"]
+    out = once(work / f"{specimen.stem}_{pressure:g}_{strength:g}{stiff}_records.h5", "run", protocol, "--specimen",
+               specimen,
+               *sets(f"test.pressure_Pa={pressure:g}", *test["set"], *cement), codes=None)
+    read = records(out, "strain", "stress_Pa", "void_ratio", "bonds", "bonds_broken_in_tension",
+                   "bonds_broken_in_shear", last=True)
+    stress, void_ratio, axis = -read.pop("stress_Pa"), read.pop("void_ratio"), test["axis"]
+    return {**read, "sigma_1": stress[:, axis, axis], "sigma_3": np.mean([stress[:, k, k] for k in range(axis)],
+                                                                         axis=0),
+            "eps_v": (void_ratio - void_ratio[0]) / (1 + void_ratio[0])}
 
 
 def smoothed(values, width):
     """Moving mean, which a single avalanche does not decide."""
-    room = np.pad(values, width // 2, mode="edge")
-    return np.convolve(room, np.ones(width) / width, mode="valid")[:len(values)]
+    padded = np.pad(values, width // 2, mode="edge")
+    return np.convolve(padded, np.ones(width) / width, mode="valid")[:len(values)]
 
 
 def measures(found):
@@ -110,52 +73,52 @@ def measures(found):
             "shear": found["bonds_broken_in_shear"][-1] / whole, "at_peak": broken[peak] / whole}
 
 
-def envelope(rows):
-    """Cohesion (Pa) and friction angle (degrees) of the peaks of one specimen."""
-    k, b = np.polyfit([row["sigma_3"] for row in rows], [row["sigma_1"] for row in rows], 1)
-    return b / (2 * np.sqrt(k)), np.degrees(np.arcsin((k - 1) / (k + 1)))
+def envelope_of(rows):
+    return envelope([row["sigma_3"] for row in rows], [row["sigma_1"] for row in rows])
 
 
-def over(values):
-    values = np.asarray(values, float)
-    return values.mean(), values.std(ddof=1) / np.sqrt(len(values))
-
-
-def told(values, scale=1.0, digits=1):
-    mean, error = over(np.asarray(values) * scale)
-    return f"{mean:.{digits}f} +- {error:.{digits}f}"
-
-
-def family(program, work, test, count):
+def family(test):
     """All tests of one kind; prints their tables. Per strength: c, phi of each specimen; rows by strength, pressure."""
-    files = specimens(program, work, test, count)
-    rows = {(s, p): [measures(run(program, work, test, each, p, s)) for each in files]
+    recipe, *settings = test["pack"]
+    files = specimens(recipe, test["protocol"], COUNT, *settings)
+    rows = {(s, p): [measures(run(test, each, p, s)) for each in files]
             for s in test["strengths"] for p in test["pressures"]}
-    print(f"\n{test['protocol']}, {count} specimens of {test['what']}, mean +- standard error of the mean\n")
+    print(f"\n{test['protocol']}, {COUNT} specimens of {test['what']}, mean +- standard error of the mean\n")
     print("strength  pressure  q peak, kPa      strain of the peak, %  q peak/late - 1  fastest dilation at, %  its rate        "
           "broken at peak, %  in tension, in shear at 5 %")
     for (s, p), each in rows.items():
         column = {name: [row[name] for row in each] for name in each[0]}
-        print(f"{s / 1e3:6.0f}    {p / 1e3:6.0f}    {told(column['q'], 1e-3):15s}  {told(column['strain'], 100, 2):21s}  "
-              f"{told(column['brittleness'], 1, 2):15s}  {told(column['dilation_strain'], 100, 2):22s}  "
-              f"{told(column['dilation'], 1, 2):14s}  {told(column['at_peak'], 100):17s}  "
-              f"{told(column['tension'], 100)}, {told(column['shear'], 100)}")
-    envelopes = {s: [envelope([rows[s, p][k] for p in test["pressures"]]) for k in range(count)] for s in test["strengths"]}
+        print(f"{s / 1e3:6.0f}    {p / 1e3:6.0f}    {in_words(column['q'], 1e-3):15s}  {in_words(column['strain'], 100, 2):21s}  "
+              f"{in_words(column['brittleness'], 1, 2):15s}  {in_words(column['dilation_strain'], 100, 2):22s}  "
+              f"{in_words(column['dilation'], 1, 2):14s}  {in_words(column['at_peak'], 100):17s}  "
+              f"{in_words(column['tension'], 100)}, {in_words(column['shear'], 100)}")
+    envelopes = {s: [envelope_of([rows[s, p][k] for p in test["pressures"]]) for k in range(COUNT)]
+                 for s in test["strengths"]}
     print("\nstrength, kPa  c, kPa           phi, degrees     c over strength")
     for s, each in envelopes.items():
         c, phi = zip(*each)
-        print(f"{s / 1e3:6.0f}         {told(c, 1e-3):15s}  {told(phi):15s}  {'' if s == 0 else told(np.array(c) / s, 1, 3)}")
+        print(f"{s / 1e3:6.0f}         {in_words(c, 1e-3):15s}  {in_words(phi):15s}  {'' if s == 0 else in_words(np.array(c) / s, 1, 3)}")
     print()
     # The strongest cement at the ratios of pressure to strength of the weakest.
     weakest, strongest = test["strengths"][1], test["strengths"][-1]
     high = [p * strongest / weakest for p in test["pressures"]]
-    similar = [envelope([measures(run(program, work, test, each, p, strongest)) for p in high]) for each in files]
+    rows.update({(strongest, p): [measures(run(test, each, p, strongest)) for each in files] for p in high
+                 if (strongest, p) not in rows})
+    similar = [envelope_of([rows[strongest, p][k] for p in high]) for k in range(COUNT)]
     # And as stiff as it should be for its strength.
-    stiff = [measures(run(program, work, test, each, test["pressures"][0], strongest, 200e6))["strain"] for each in files]
+    stiff = [measures(run(test, each, test["pressures"][0], strongest, 200e6))["strain"] for each in files]
     return rows, envelopes, similar, stiff
 
 
-def judge(name, test, rows, envelopes, similar, stiff, count):
+def along_envelope(rows, strength):
+    """phi between neighbouring pressures, degrees, in words."""
+    pressures = sorted(p for s, p in rows if s == strength)
+    phi = [np.mean([envelope_of([rows[strength, a][k], rows[strength, b][k]])[1] for k in range(COUNT)])
+           for a, b in zip(pressures, pressures[1:])]
+    return ", ".join(f"{each:.1f}" for each in phi)
+
+
+def judge(name, test, rows, envelopes, similar, stiff, count=COUNT):
     strengths, low = test["strengths"], test["pressures"][0]
     cohesion = np.array([[each[0] for each in envelopes[s]] for s in strengths])
     angle = np.array([[each[1] for each in envelopes[s]] for s in strengths])
@@ -170,12 +133,19 @@ def judge(name, test, rows, envelopes, similar, stiff, count):
     cause = (f"bonds of {strongest / 1e3:.0f} kPa at these pressures are on the steep part of a curved envelope (Collins and Sitar); at pressures "
              f"{strongest / weakest:.0f} times as high, of the same part of their strength as for {weakest / 1e3:.0f} kPa, phi is {scaled:.1f}, "
              f"{gap:+.1f} from that of {weakest / 1e3:.0f} kPa")
+    curved = (f"the envelope is curved (Collins and Sitar): between neighbouring pressures, from {low / 1e3:.0f} kPa on twice as high each, phi is "
+              + "; ".join(f"{along_envelope(rows, s)} with bonds of {s / 1e3:.0f} kPa"
+                          for s in strengths[1:]) + f"; {along_envelope(rows, 0)} without "
+              f"cement. At pressures {strongest / weakest:.0f} times as high, of the same part of their strength as for {weakest / 1e3:.0f} kPa, phi is {scaled:.1f}, "
+              f"{gap:+.1f} from that of {weakest / 1e3:.0f} kPa, where 3 are allowed to this cause")
     change = angle[1:].mean(axis=1) - angle[0].mean()
-    error = max(over(angle[k] - angle[0])[1] for k in range(1, len(strengths)))
+    error = max(mean_error(angle[k] - angle[0])[1] for k in range(1, len(strengths)))
     verdict(f"{name}: phi beside that without cement (Clough: similar), largest change, degrees",
-            f"{change[np.argmax(abs(change))]:+.1f} +- {error:.1f}", "within 5", abs(change).max() <= 5, abs(gap) <= 3, cause)
+            f"{change[np.argmax(abs(change))]:+.1f} +- {error:.1f}", "within 5", abs(change).max() <= 5, abs(gap) <= 3,
+            cause, reason=curved)
     spread = np.ptp(angle[1:].mean(axis=1))
-    verdict(f"{name}: phi between bond strengths (Consoli: independent), degrees", f"{spread:.1f}", "within 3", spread <= 3, abs(gap) <= 3, cause)
+    verdict(f"{name}: phi between bond strengths (Consoli: independent), degrees", f"{spread:.1f}", "within 3",
+            spread <= 3, abs(gap) <= 3, cause, reason=curved)
     mean = lambda what, s, p: np.mean([row[what] for row in rows[s, p]])
     brittle = [mean("brittleness", s, low) for s in strengths]
     verdict(f"{name}: softening after the peak grows with strength (Wang and Leung; Jiang)",
@@ -223,12 +193,10 @@ def draw(path, families):
                     axes[3].plot(strain, 100 * np.mean([each[f"bonds_broken_in_{mode}"][:length] / n for each, n in zip(curves, whole)], axis=0),
                                  style, color=colour, label=f"{strength / 1e3:.0f} kPa, {mode}")
         for axis, what in ((axes[0], "q (kPa)"), (axes[1], "volume strain (%), expansion"), (axes[3], "broken bonds (%)")):
-            axis.set_xlabel("axial strain (%)")
-            axis.set_ylabel(what)
+            axis.set(xlabel="axial strain (%)", ylabel=what)
         axes[0].set_title(f"{name}, {low / 1e3:.0f} kPa: mean and range of {len(curves)}", fontsize=10, loc="left")
         axes[2].set_title("peaks and envelopes", fontsize=10, loc="left")
-        axes[2].set_xlabel(r"$\sigma_3$ (kPa)")
-        axes[2].set_ylabel(r"$\sigma_1$ (kPa)")
+        axes[2].set(xlabel=r"$\sigma_3$ (kPa)", ylabel=r"$\sigma_1$ (kPa)")
         axes[2].set_xlim(left=0)
         axes[2].set_ylim(bottom=0)
         axes[0].legend(fontsize=8)
@@ -239,16 +207,13 @@ def draw(path, families):
 
 
 def main():
-    options = part.options(__doc__)
     families = []
     for name, test in (("discs", BIAXIAL), ("spheres", TRIAXIAL)):
-        rows, envelopes, similar, stiff = family(options.program, options.work, test, options.count)
-        judge(name, test, rows, envelopes, similar, stiff, options.count)
+        rows, envelopes, similar, stiff = family(test)
+        judge(name, test, rows, envelopes, similar, stiff)
         families.append((name, test, rows, envelopes))
-    if options.figure:
-        draw(options.figure, families)
-    tell_verdicts()
+    draw(results / "cemented.png", families)
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,6 +1,6 @@
 """tools/validate constants: what each constant of quasi-static loading is worth.
 
-    constants.py RVELAB FOLDER RESULTS ESTIMATES
+    constants.py RVELAB WORK RESULTS ESTIMATES
 
 A copy of the tree in FOLDER is built, in which the constants of rvelab/solver/quasi_static/constants.hpp are read when the
 program starts. With each constant put out of action the increments of `tools/validate estimates` are made again, eight of each of
@@ -14,11 +14,11 @@ import pathlib
 import re
 import shutil
 import statistics
-import subprocess
-import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-folder, estimates = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[4])
+import harness
+from harness import ROOT, run, work
+
+estimates = pathlib.Path(harness.words[0]).resolve()
 EACH = 8
 # Without: the values that put it out of action.
 ALONE = {
@@ -82,22 +82,22 @@ def readable(text):
 
 
 def built():
-    tree = folder / "tree"
+    tree = work / "tree"
     shutil.rmtree(tree, ignore_errors=True)
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", "results"))
-    room = tree / "rvelab/solver/quasi_static"
-    (room / "constants.hpp").write_text(readable((room / "constants.hpp").read_text()))
-    for path in [*room.glob("*.?pp"), *(tree / "rvelab/solver/at_rate").glob("*.?pp")]:
+    module = tree / "rvelab/solver/quasi_static"
+    (module / "constants.hpp").write_text(readable((module / "constants.hpp").read_text()))
+    for path in [*module.glob("*.?pp"), *(tree / "rvelab/solver/at_rate").glob("*.?pp")]:
         path.write_text(re.sub(r"constexpr (long|double) (?=\w+ = [^;]*(check_interval|held_path))", r"const \1 ",
                                path.read_text().replace("constexpr double held_path_ratio", "inline double held_path_ratio")))
-    subprocess.run(["cmake", "--preset", "release", "-D", "BUILD_TESTING=OFF"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", "--preset", "release", "--target", "rvelab-estimates"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+    run("cmake", "--preset", "release", "-D", "BUILD_TESTING=OFF", cwd=tree)
+    run("cmake", "--build", "--preset", "release", "--target", "rvelab-estimates", cwd=tree)
     return tree / "build/release/bin/rvelab-estimates"
 
 
 def figures(program, without=""):
     values = {"RVELAB_CONSTANT_" + key: value for key, value in (each.split("=") for each in without.split(",") if each)}
-    subprocess.run([program, "2", "37", str(EACH), estimates], env={**os.environ, **values}, check=True, stdout=subprocess.DEVNULL)
+    run(program, 2, 37, EACH, estimates, env={**os.environ, **values})
     within, kept, ratios, steps = [], [], [], []
     for line in (estimates / "increments.txt").read_text().splitlines():
         _, _, _, _, known, failed, error, estimate, allowed, spread, *_, cost = map(float, line.split())
@@ -112,14 +112,19 @@ def figures(program, without=""):
             100 * statistics.mean(kept), len(within))
 
 
-def told(name, found, base, note=""):
+def line(name, found, base, note=""):
     print(f"{name:<48}{found[0] / base[0]:8.3f}{found[1] / base[1]:8.3f}{found[2]:10.1f}{found[3]:8.2f}{found[4]:11.1f}{found[5]:6d}   {note}".rstrip(), flush=True)
 
 
-program = built()
-base = figures(program)
-print(f"{'':<48}sub-steps over those   % within  median  % within\n{'without':<48}{'mean':>8}{'sum':>8}{'estimate':>10}{'est/err':>8}"
-      f"{'tolerance':>11}{'n':>6}   what else it is for, or what was tried\n")
-told("all as they are", base, base, f"{base[1]:.3g} sub-steps")
-for name, (without, note) in ALONE.items():
-    told(name, figures(program, without), base, note)
+def main():
+    program = built()
+    base = figures(program)
+    print(f"{'':<48}sub-steps over those   % within  median  % within\n{'without':<48}{'mean':>8}{'sum':>8}{'estimate':>10}{'est/err':>8}"
+          f"{'tolerance':>11}{'n':>6}   what else it is for, or what was tried\n")
+    line("all as they are", base, base, f"{base[1]:.3g} sub-steps")
+    for name, (without, note) in ALONE.items():
+        line(name, figures(program, without), base, note)
+
+
+if __name__ == "__main__":
+    harness.main(main)

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""What holding a stress costs: control.py RVELAB WORK [CASE...].
+"""What holding a stress costs: control.py RVELAB WORK RESULTS [CASE...].
 
 Drained compression through peak and softening, 2D and 3D, at kappa = kn/(p t) (2D) and (E*/p)^(2/3) (3D) from 1e2 to
 1e6. Then the recorded strain path is prescribed again with the same tolerance and spacing, and the grain-steps compared:
@@ -13,13 +12,13 @@ Bars: at most 1 % of the records flagged; at most 1.3 times the grain-steps.
 """
 import pathlib
 import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import h5py
 import numpy as np
 
-DATA = pathlib.Path("tests/data/yade")
+import harness
+from harness import imported, in_turn, rvelab, sets, work
+
 EVERY = 10
 # kn of the mean pair over thickness: 800 MPa * 5 mm / 0.1 m; E* = 7 GPa / (2 (1 - 0.25^2)). Steps per strain grow as
 # kappa: stiff packings, whose peak comes early, go less far.
@@ -30,10 +29,9 @@ SCENES = {"disc": ("dense", lambda kappa: 4e7 / kappa, "y",
 RECORDS = 300
 
 
-def run(program, *arguments, seconds=None):
+def run(*arguments, seconds=None):
     # kappa = 1e2 is soft: overlaps are large.
-    subprocess.run([program, "run", *map(str, arguments), "--force", "--set", "solver.max_overlap_ratio=1"], check=True,
-                   stdout=subprocess.DEVNULL, timeout=seconds)
+    rvelab("run", *arguments, "--force", *sets("solver.max_overlap_ratio=1"), timeout=seconds)
 
 
 def steps_of(path):
@@ -48,7 +46,7 @@ def deformations(path, gradients):
     return path
 
 
-def again(program, name, file, gradients, substeps, grains):
+def again(name, file, gradients, substeps, grains):
     """Grain-steps of every tenth increment, under control and prescribed from the same state."""
     state, sealed, toml, out = (pathlib.Path(f"{name}_one{end}") for end in (".h5", "_sealed.h5", ".toml", "_R.h5"))
     controlled = prescribed = 0
@@ -56,36 +54,36 @@ def again(program, name, file, gradients, substeps, grains):
         with h5py.File(state, "w") as single:
             for key in file[f"snapshots/{k:06d}"]:
                 file.copy(f"snapshots/{k:06d}/{key}", single)
-            single.attrs["format"], single.attrs["format_version"] = "rvelab specimen", file.attrs["format_version"]
+            single.attrs["format"], single.attrs["format_version"] = np.bytes_("rvelab specimen"), file.attrs["format_version"]
         # Made by another program, it has no checksum.
-        subprocess.run([program, "seal", state, "-o", sealed, "--force"], check=True, stdout=subprocess.DEVNULL)
-        run(program, deformations(toml, [gradients[k + 1] @ np.linalg.inv(gradients[k])]), "--specimen", sealed, "-o", out)
+        rvelab("seal", state, "-o", sealed, "--force")
+        run(deformations(toml, [gradients[k + 1] @ np.linalg.inv(gradients[k])]), "--specimen", sealed, "-o", out)
         controlled += int(substeps[k + 1]) * grains
         prescribed += steps_of(out)
     return controlled, prescribed
 
 
-def case(program, work, scene, kappa):
+def case(scene, kappa):
     packing, pressure_of, axis, ends = SCENES[scene]
     pressure = f"test.pressure_Pa={pressure_of(kappa)!r}"
     name = work / f"{scene}_{kappa:.0e}"
     start, test, whole = (pathlib.Path(f"{name}{end}") for end in ("_start.h5", ".h5", "_replay.h5"))
     isotropic, drained = pathlib.Path(f"{name}_start.toml"), pathlib.Path(f"{name}.toml")
     isotropic.write_text('[test]\nname = "start"\n[[stage]]\nkind = "isotropic"\n')
-    run(program, isotropic, "--specimen", work / f"{packing}.h5", "-o", start, "--set", pressure)
+    run(isotropic, "--specimen", work / f"{packing}.h5", "-o", start, *sets(pressure))
     drained.write_text(f'[test]\nname = "drained"\n[output]\nquantities = []\nsnapshots_every = {EVERY}\n'
                        f'[[stage]]\nkind = "compression"\naxis = "{axis}"\nto_strain = {ends[kappa]}\n'
                        f"record_every = {ends[kappa] / RECORDS!r}\n")
-    run(program, drained, "--specimen", start, "-o", test, "--set", pressure)
+    run(drained, "--specimen", start, "-o", test, *sets(pressure))
     with h5py.File(test) as file:
         gradients, stress = file["records/deformation_gradient"][:], -file["records/stress_Pa"][:]
         flagged = 1 - file["records/target_held"][:].mean()
         held_error, substeps = file["records/held_error"][:], file["records/substeps"][:]
         grains = len(file["specimen/grains/radius_m"])
-        controlled, prescribed = again(program, name, file, gradients, substeps, grains)
+        controlled, prescribed = again(name, file, gradients, substeps, grains)
     path = drift = np.nan
     try:
-        run(program, deformations(pathlib.Path(f"{name}_replay.toml"), gradients[1:]), "--specimen", start, "-o", whole,
+        run(deformations(pathlib.Path(f"{name}_replay.toml"), gradients[1:]), "--specimen", start, "-o", whole,
             seconds=600)
         path = steps_of(test) / steps_of(whole)
         with h5py.File(whole) as file:
@@ -99,28 +97,20 @@ def case(program, work, scene, kappa):
     good = flagged <= 0.01 and times <= 1.3 and not (path > 1.3 and abs(drift - 1) <= 0.5)
     return (f"{scene:7} {kappa:7.0e} {pressure_of(kappa):12.4g} {ratio[peak]:11.3f} {ends[kappa] / RECORDS * peak:10.4f} "
             f"{ratio[-RECORDS // 5:].mean():11.3f} {flagged:8.2%} {held_error.mean():11.5f} {steps_of(test):12.4g} "
-            f"{times:6.2f} {path:6.2f} {drift:8.3g}  {'ok' if good else 'MISSED'}")
+            f"{times:6.2f} {path:6.2f} {drift:8.3g} ", good)
 
 
 def main():
-    program, work = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
-    work.mkdir(parents=True, exist_ok=True)
     for packing, *_ in SCENES.values():
-        stem = DATA / packing
-        subprocess.run([program, "import", f"{stem}.particles.csv", f"{stem}.contacts.csv", f"{stem}.json", "-o",
-                        work / f"{packing}.h5"], check=True, stdout=subprocess.DEVNULL)
+        imported(packing)
     cases = [(scene, kappa) for kappa in (1e2, 1e3, 1e4, 1e5, 1e6) for scene in SCENES]
-    if sys.argv[3:]:
-        cases = [each for each in cases if f"{each[0]}_{each[1]:.0e}" in sys.argv[3:]]
+    if harness.words:
+        cases = [each for each in cases if f"{each[0]}_{each[1]:.0e}" in harness.words]
     print("scene     kappa  pressure_Pa  peak ratio  at strain  last fifth  flagged  mean error  grain-steps  again   path"
           "  p drift  verdict")
-    failed = False
-    with ThreadPoolExecutor(2) as pool:
-        for line in pool.map(lambda each: case(program, work, *each), cases):
-            print(line, flush=True)
-            failed = failed or line.endswith("MISSED")
-    if failed:
-        sys.exit("control: bars missed")
+    for text, good in in_turn(lambda each: case(*each), cases):
+        harness.row(text, good, good="ok")
 
 
-main()
+if __name__ == "__main__":
+    harness.main(main)

@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Single flipped bits in every kind of file that is read: damage.py PROGRAM [NUMBER].
+"""Single flipped bits in every kind of file that is read: damage.py PROGRAM WORK RESULTS [NUMBER].
 
 Packs a specimen, runs a test on it, exports CSV, and flips one bit at a time, seeded, NUMBER (1000) in each file:
 specimen, records, a pool, a journal without its record file; records and a pool of cemented, moist grains too. Each must be refused (exit code 2, one line) or leave what
@@ -8,12 +7,13 @@ The files of `import` have no checksum: there only crashes, endless runs and mes
 """
 import json
 import os
-import pathlib
 import random
 import subprocess
 import sys
-import tempfile
 import time
+
+import harness
+from harness import program, run, rvelab, sets, work
 
 TEST = '[test]\nname = "small"\n[output]\nsnapshots_every = 2\n[[stage]]\nkind = "simple_shear"\nto_strain = 1e-3\n' \
        'record_every = 2e-4\n'
@@ -24,8 +24,8 @@ CEMENTED = '[test]\nname = "cemented and moist"\n[[stage]]\nkind = "cement"\nyou
 
 
 def answer(command):
-    done = subprocess.run(command, capture_output=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr.decode(errors="replace")
+    done = run(*command, codes=None, timeout=120, errors="replace")
+    return done.returncode, done.stdout, done.stderr
 
 
 def measures(output):
@@ -62,10 +62,10 @@ def flip(command, original, number, sealed, damaged):
     return counts["bad"] == 0 and not (sealed and counts["opened and differed"])
 
 
-def journal_of(program, work):
+def journal_of():
     """The journal of a run that was killed."""
-    running = subprocess.Popen([program, "run", "small.toml", "--specimen", "S.h5", "-o", "K.h5", "--set",
-                                "stage.simple_shear.to_strain=1"], cwd=work, stdout=subprocess.DEVNULL,
+    running = subprocess.Popen([program, "run", "small.toml", "--specimen", "S.h5", "-o", "K.h5", "--force",
+                                *sets("stage.simple_shear.to_strain=1")], cwd=work, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL)
     journal = work / "K.h5.journal"
     while running.poll() is None and (not journal.exists() or journal.stat().st_size < 200_000):
@@ -75,44 +75,41 @@ def journal_of(program, work):
     return journal
 
 
-def pool_of(program, work, source, name):
+def pool_of(source, name):
     """A pool file of one RVE, by the Python package."""
-    root = pathlib.Path(__file__).resolve().parents[2]
-    subprocess.run([sys.executable, "-c", f"import rvelab; rvelab.Rve('{source}').save('{name}')"], cwd=work, check=True,
-                   env={**os.environ, "PYTHONPATH": str(root / "tools/python"),
-                        "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
+    run(sys.executable, "-c", f"import rvelab; rvelab.Rve('{source}').save('{name}')", cwd=work,
+        env={**os.environ, "PYTHONPATH": str(harness.ROOT / "tools/python"),
+             "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
     return work / name
 
 
 def main():
-    program, number = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]) if len(sys.argv) > 2 else 1000
-    good = True
-    with tempfile.TemporaryDirectory() as folder:
-        work = pathlib.Path(folder)
-        (work / "small.toml").write_text(TEST)
-        (work / "cemented.toml").write_text(CEMENTED)
-        for words in (["pack", "pack_dense", "-o", "S.h5", "--set", "pack.number=64"],
-                      ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
-                      ["run", "cemented.toml", "--specimen", "S.h5", "-o", "C.h5"],
-                      ["export", "S.h5", "--format", "csv", "-o", "E"]):
-            subprocess.run([program, *words], cwd=work, check=True, capture_output=True)
-        damaged = work / "damaged.h5"
-        inspect = [program, "inspect", damaged, "--json"]
-        for path in (work / "S.h5", work / "R.h5", work / "C.h5"):
-            good &= flip(inspect, path, number, True, damaged)
-        for source, name in (("S.h5", "P.h5"), ("C.h5", "PC.h5")):
-            pool = pool_of(program, work, source, name)
-            good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
-        damaged.unlink()
-        good &= flip(inspect, journal_of(program, work), number, False, work / "damaged.h5.journal")
-        tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]
-        for path in tables:
-            copy = path.with_name("damaged." + path.name)
-            inputs = [copy if each == path else each for each in tables]
-            good &= flip([program, "import", *inputs[:3], "--material", inputs[3], "-o", work / "E.h5", "--force",
-                          "--json"], path, number // 4, False, copy)
-    sys.exit(0 if good else 1)
+    number, good = int(harness.words[0]) if harness.words else 1000, True
+    (work / "small.toml").write_text(TEST)
+    (work / "cemented.toml").write_text(CEMENTED)
+    for words in (["pack", "pack_dense", "-o", "S.h5", *sets("pack.number=64")],
+                  ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
+                  ["run", "cemented.toml", "--specimen", "S.h5", "-o", "C.h5"],
+                  ["export", "S.h5", "--format", "csv", "-o", "E"]):
+        rvelab(*words, "--force", cwd=work)
+    damaged = work / "damaged.h5"
+    inspect = [program, "inspect", damaged, "--json"]
+    for path in (work / "S.h5", work / "R.h5", work / "C.h5"):
+        good &= flip(inspect, path, number, True, damaged)
+    for source, name in (("S.h5", "P.h5"), ("C.h5", "PC.h5")):
+        pool = pool_of(source, name)
+        good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
+    damaged.unlink()
+    good &= flip(inspect, journal_of(), number, False, work / "damaged.h5.journal")
+    tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]
+    for path in tables:
+        copy = path.with_name("damaged." + path.name)
+        inputs = [copy if each == path else each for each in tables]
+        good &= flip([program, "import", *inputs[:3], "--material", inputs[3], "-o", work / "E.h5", "--force",
+                      "--json"], path, number // 4,
+                     False, copy)
+    return not good
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

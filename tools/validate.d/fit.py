@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Hidden parameters of real tests: fit.py PROGRAM [SETS] [FOLDER]
+"""Hidden parameters of real tests: fit.py PROGRAM WORK RESULTS [SETS]
 
 For each set friction and rolling friction are drawn. Ten specimens of 150 discs are tested with them (biaxial, 20 kPa, to 4 %),
 and the means of friction angle and dilation angle with their standard errors are the targets; the errors are widened by
@@ -8,56 +7,47 @@ set has specimens of its own, so that sets are independent. Prints truth and 95 
 """
 
 import json
-import pathlib
 import random
-import subprocess
-import sys
+
+import harness
+from harness import answer, rvelab, sets, work
 
 KEYS = {"material.friction": (0.15, 0.8), "material.rolling_friction": (0.0, 0.2)}
 TARGETS = ("friction_angle_deg", "dilation_angle_deg")
-TEST = ["--set", "stage.compression.to_strain=0.04", "--set", "test.pressure_Pa=20e3"]
-
-
-def rvelab(*words):
-    done = subprocess.run([sys.argv[1], *words], capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"fit.py: rvelab {' '.join(words)}: {done.stderr}")
-    return done.stdout
+TEST = sets("stage.compression.to_strain=0.04", "test.pressure_Pa=20e3")
 
 
 def measured(specimens, truth):
     """Mean and standard error of the targets with the hidden parameters."""
-    words = [word for key, value in truth.items() for word in ("--set", f"{key}={value}")]
-    summary = json.loads(rvelab("run", "biaxial", "--specimen", *specimens, "--json", *TEST, *words))["summary"]
+    summary = answer("run", "biaxial", "--specimen", *specimens, *TEST,
+                     *sets(*(f"{key}={value}" for key, value in truth.items())))["summary"]
     rows = {row["measure"]: row for row in summary}
     return {name: (rows[name]["mean"], 2.262 / 1.96 * rows[name]["standard_error"]) for name in TARGETS}
 
 
 def main():
-    sets = int(sys.argv[2]) if len(sys.argv) > 2 else 20
-    folder = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else "build/validate/fit")
-    folder.mkdir(parents=True, exist_ok=True)
+    count = int(harness.words[0]) if harness.words else 20
     draw = random.Random(7)
     print("10 specimens of 150 discs in the data, 10 others in the fit; two targets, two unknowns, 56 tests a set")
     print("set  friction: truth, 95 % interval  rolling friction: truth, 95 % interval  both within")
     inside = 0
-    for number in range(1, sets + 1):
-        rvelab("pack", "pack_dense", "-o", str(folder / "S.h5"), "--count", "20", "--force", "--set", "pack.number=150",
-               "--set", "target.void_ratio_tolerance=0.01", "--set", f"pack.seed={100 * number}")
-        specimens = [str(folder / f"S_{k:02d}.h5") for k in range(1, 21)]
+    for number in range(1, count + 1):
+        rvelab("pack", "pack_dense", "-o", work / "S.h5", "--count", 20, "--force",
+               *sets("pack.number=150", "target.void_ratio_tolerance=0.01", f"pack.seed={100 * number}"))
+        specimens = [work / f"S_{k:02d}.h5" for k in range(1, 21)]
         truth = {key: round(low + (0.1 + 0.8 * draw.random()) * (high - low), 4) for key, (low, high) in KEYS.items()}
         targets = measured(specimens[:10], truth)
         words = [word for name, (mean, error) in targets.items() for word in ("--target", f"{name}={mean}+-{error}")]
         words += [word for key, (low, high) in KEYS.items() for word in ("--vary", f"{key}={low}:{high}")]
-        out = folder / f"set_{number:02d}"
-        rvelab("fit", "biaxial", "--specimen", *specimens[10:], *words, *TEST, "-o", str(out), "--force")
+        out = work / f"set_{number:02d}"
+        rvelab("fit", "biaxial", "--specimen", *specimens[10:], *words, *TEST, "-o", out, "--force")
         found = json.loads((out / "fit.json").read_text())["parameters"]
         within = [each["low_95"] <= truth[each["key"]] <= each["high_95"] for each in found]
         inside += all(within)
         cells = "  ".join(f"{truth[each['key']]:.3f}, {each['low_95']:.3f} to {each['high_95']:.3f}" for each in found)
         print(f"{number:3d}  {cells}  {'yes' if all(within) else 'no'}", flush=True)
-    print(f"both truths within their 95 % intervals: {inside} of {sets} sets")
+    print(f"both truths within their 95 % intervals: {inside} of {count} sets")
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

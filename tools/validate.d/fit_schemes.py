@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Three schemes of inverse calibration on hidden parameter sets: fit_schemes.py [SETS]
+"""Three schemes of inverse calibration on hidden parameter sets: fit_schemes.py PROGRAM WORK RESULTS [SETS]
 
 A Gaussian-process surrogate (what `rvelab fit` does), an iterative Bayesian filter (importance weights, resampling from
 a Gaussian; Cheng et al. 2018) and an ensemble Kalman scheme (multiple data assimilation; Emerick and Reynolds 2013) find
@@ -9,11 +8,11 @@ with a scatter of specimens like that of 400 discs, half of it shared by all tes
 Prints for each scheme how often the truth lies in the 95 % interval of every parameter, the error and the width.
 """
 
-import sys
-
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.optimize import minimize
+
+import harness
 
 SCATTER = np.array([1.6, 0.9, 2.0, 0.06])  # of one test: degrees, degrees, degrees, log10 Pa
 SPECIMENS, DATA_TESTS = 10, 10
@@ -184,7 +183,7 @@ def by_kalman(laboratory, dimensions, tests, rounds=4):
 
 
 def main():
-    sets = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    sets = int(harness.words[0]) if harness.words else 20
     print(f"{sets} hidden sets each; targets: means of {DATA_TESTS} tests; {SPECIMENS} specimens; parameters in 0 to 1")
     print("unknowns  tests  scheme                        truth within 95 %  of it alone  rms error  width")
     for unknowns, tests in ((2, 40), (3, 64)):
@@ -205,4 +204,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

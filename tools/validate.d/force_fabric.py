@@ -1,6 +1,6 @@
 """tools/validate force_fabric: q/p of force and fabric beside that of the contacts, in biaxial tests to 15 %.
 
-    force_fabric.py RVELAB FOLDER
+    force_fabric.py RVELAB WORK RESULTS
 
 The relation (rvelab/measure/anisotropy.hpp) takes, of each direction, the mean force and the mean branch, and multiplies them. Of the last
 state its prediction stands beside those of the means of their product, to the same order, and of all orders to 12."""
@@ -8,33 +8,25 @@ state its prediction stands beside those of the means of their product, to the s
 import csv
 import json
 import pathlib
-import subprocess
-import sys
 
-import h5py
 import numpy as np
 
-from verdict import tell_verdicts, verdict
+import harness
+from harness import once, packed, records, rvelab, sets, verdict, work
 
-rvelab, folder = sys.argv[1], pathlib.Path(sys.argv[2])
 CASES = {"discs": ("pack_dense",), "bedded ellipses, b/a 0.5": ("pack_bedded", 0.5), "bedded ellipses, b/a 0.3": ("pack_bedded", 0.3)}
 BAR = 0.05
 
 
-def call(*words):
-    subprocess.run([rvelab, *map(str, words)], check=True, capture_output=True, text=True)
-
-
 def tested(name, recipe, aspect=None):
     """Record file of the test and the beginning of the names of its last state."""
-    base = folder / name.replace(" ", "_").replace("/", "").replace(",", "")
-    if not pathlib.Path(f"{base}.json").exists():
-        shape = [f"grains.{end}_aspect_ratio={aspect}" for end in ("smallest", "largest")] if aspect else []
-        call("pack", recipe, "-o", f"{base}_S.h5", "--force", *(word for each in shape for word in ("--set", each)))
-        call("run", "biaxial", "--specimen", f"{base}_S.h5", "-o", f"{base}.h5", "--force", "--set", "test.pressure_Pa=100e3", "--set",
-             "stage.compression.to_strain=0.15", "--set", 'output.quantities=["stress_force_fabric"]')
-        call("export", f"{base}.h5", "--format", "csv", "-o", base, "--force")
-    return f"{base}.h5", str(base)
+    base = name.replace(" ", "_").replace("/", "").replace(",", "")
+    shape = [f"grains.{end}_aspect_ratio={aspect}" for end in ("smallest", "largest")] if aspect else []
+    out = once(work / f"{base}.h5", "run", "biaxial", "--specimen", packed(recipe, f"{base}_S", *shape),
+               *sets("test.pressure_Pa=100e3", "stage.compression.to_strain=0.15",
+                     'output.quantities=["stress_force_fabric"]'))
+    rvelab("export", out, "--format", "csv", "-o", work / base, "--force")
+    return out, work / base
 
 
 def rows_of(path):
@@ -50,9 +42,9 @@ def contacts_of(base):
     """Normals, forces and branches of the contacts (n, 2)."""
     grains, contacts = rows_of(f"{base}.particles.csv"), rows_of(f"{base}.contacts.csv")
     lattice = np.array(json.loads(pathlib.Path(f"{base}.json").read_text())["hSize"])
-    place, number = columns(grains, "x", "y"), {row["id"]: k for k, row in enumerate(grains)}
+    position, number = columns(grains, "x", "y"), {row["id"]: k for k, row in enumerate(grains)}
     first, second = ([number[row[name]] for row in contacts] for name in ("id1", "id2"))
-    branch = place[second] - place[first] + columns(contacts, "sx", "sy") @ lattice.T
+    branch = position[second] - position[first] + columns(contacts, "sx", "sy") @ lattice.T
     if "nx" in contacts[0]:
         normal = columns(contacts, "nx", "ny")
     else:  # round grains
@@ -97,21 +89,23 @@ def predictions(normal, force, branch):
                         l[:, 0] - waves(angle, 4) @ np.linalg.lstsq(waves(angle, 4), l[:, 0], rcond=None)[0])[0, 1])
 
 
-folder.mkdir(parents=True, exist_ok=True)
-print("q/p at 15 %: of the contacts; of force and fabric: products of means, second order; means of products, second order; products of means,\n"
-      "order 12; correlation of normal force and branch of one direction\n")
-for name, case in CASES.items():
-    records, state = tested(name, *case)
-    with h5py.File(records) as file:
-        stress, stage = -file["records/stress_Pa"][()][:, :2, :2], file["records/stage"][()]
-        predicted = np.asarray(file["records/stress_force_fabric"][()]).reshape(len(stage), -1)[:, 0]
-    principal = np.linalg.eigvalsh(0.5 * (stress + stress.transpose(0, 2, 1)))
-    measured = (principal[:, 1] - principal[:, 0]) / principal.sum(axis=1)
-    largest = np.abs(predicted - measured)[stage == stage.max()].max()
-    exact, means, products, orders, correlation = predictions(*contacts_of(state))
-    print(f"{name:<28} {exact:.3f}  {means:.3f}  {products:.3f}  {orders:.3f}  {correlation:6.2f}")
-    verdict(f"{name}: largest difference over the path", f"{largest:.3f}", f"{BAR}", largest <= BAR,
-            abs(products - exact) < 0.01 and abs(orders - exact) > BAR and correlation < -0.1,
-            f"force and branch of one direction vary together (correlation {correlation:.2f}), and the relation multiplies their means: to order 12 "
-            f"these give {orders:.3f} at the end, the means of their products, which are exact to the second order, {products:.3f} of {exact:.3f}")
-tell_verdicts()
+def main():
+    print("q/p at 15 %: of the contacts; of force and fabric: products of means, second order; means of products, second order; products of means,\n"
+          "order 12; correlation of normal force and branch of one direction\n")
+    for name, case in CASES.items():
+        out, state = tested(name, *case)
+        stress, stage, predicted = records(out, "stress_Pa", "stage", "stress_force_fabric").values()
+        stress, predicted = -stress[:, :2, :2], predicted.reshape(len(stage), -1)[:, 0]
+        principal = np.linalg.eigvalsh(0.5 * (stress + stress.transpose(0, 2, 1)))
+        measured = harness.sine_of(principal[:, 1], principal[:, 0])
+        largest = np.abs(predicted - measured)[stage == stage.max()].max()
+        exact, means, products, orders, correlation = predictions(*contacts_of(state))
+        print(f"{name:<28} {exact:.3f}  {means:.3f}  {products:.3f}  {orders:.3f}  {correlation:6.2f}")
+        verdict(f"{name}: largest difference over the path", f"{largest:.3f}", f"{BAR}", largest <= BAR,
+                abs(products - exact) < 0.01 and abs(orders - exact) > BAR and correlation < -0.1,
+                f"force and branch of one direction vary together (correlation {correlation:.2f}), and the relation multiplies their means: to order 12 "
+                f"these give {orders:.3f} at the end, the means of their products, which are exact to the second order, {products:.3f} of {exact:.3f}")
+
+
+if __name__ == "__main__":
+    harness.main(main)

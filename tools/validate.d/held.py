@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Held stresses at dt = 0 through avalanches: held.py RVELAB WORK [--count N] [--before RVELAB] [RECIPE...].
+"""Held stresses at dt = 0 through avalanches: held.py RVELAB WORK RESULTS [--count N] [--before RVELAB] [RECIPE...].
 
 N specimens of each recipe (default: 20, of spheres 5), drained biaxial or triaxial compression at three pressures. For
 each recipe: records, those off by more than loading.held_tolerance, largest error over the tolerance, tests that ended
@@ -10,14 +9,12 @@ volume, on three specimens of each of their recipes (--no-others: not).
 Bars: no record off by more than the tolerance, no volume that should stay off by more than 1e-9, no test that ended early.
 """
 import argparse
-import pathlib
-import subprocess
-import sys
 
-import h5py
 import numpy as np
 
-PROTOCOLS = pathlib.Path("protocols").resolve()
+import harness
+from harness import degrees_of, once, packed, records, run, sets, work
+
 PRESSURES = ("50e3", "100e3", "200e3")
 LOW = ("2e3", "5e3", "15e3")  # of families under their own weight, 0.25 to 1 m deep
 SPHERES = ("hertz", "mixture", "qu282", "qu371")
@@ -91,109 +88,99 @@ KEPT_VOLUME = ("biaxial_undrained", "triaxial_undrained", "cyclic_shear", "cycli
 
 
 def path_of(name):
-    return name if name.endswith(".toml") else str(PROTOCOLS / f"{name}.toml")
+    return work / name if name.endswith(".toml") else name
 
 
-def specimens(program, work, name, count):
+def specimens(program, name, count):
+    """Made by `program`: those that this one refuses are left out."""
     recipe, settings, _ = RECIPES[name]
     made = []
     for seed in range(1, 1 + (1 if name == "regular" else count)):
         file = work / f"{name}_{seed}.h5"
+        try:
+            if program == harness.program:
+                packed(path_of(recipe), file.stem, f"pack.seed={seed}", *settings, options=("--threads", 1))
+            else:
+                once(file, program, name, make=lambda out: run(program, "pack", path_of(recipe), "-o", out,
+                                                               "--threads", 1,
+                                                               *sets(f"pack.seed={seed}", *settings)))
+        except SystemExit as refused:
+            print(f"# {name} {seed}: {str(refused)[-200:]}", flush=True)
+            continue
         # A family is a file for each depth: here the least deep.
-        depths = f"{name}_{seed}_*Pa.h5"
-        if not file.exists() and not any(work.glob(depths)):
-            answer = subprocess.run([program, "pack", path_of(recipe), "-o", file, "--threads", "1", "--set", f"pack.seed={seed}",
-                                     *(word for each in settings for word in ("--set", each))], cwd=work,
-                                    capture_output=True, text=True)
-            if answer.returncode != 0:
-                print(f"# {name} {seed}: {answer.stderr.strip()[-200:]}", flush=True)
-                continue
-        made.append(file if file.exists() else min(work.glob(depths), key=lambda each: int(each.stem.split("_")[-1][:-2])))
+        made.append(file if file.exists() else min(work.glob(f"{name}_{seed}_*Pa.h5"),
+                                                   key=lambda each: int(each.stem.split("_")[-1][:-2])))
     return made
 
 
-def test(program, work, protocol, specimen, settings):
+def test(program, protocol, specimen, settings):
     """Held errors (where the volume is to stay: its own, in units that allow 1e-9), sub-steps, peak friction angle in
     degrees, and how it ended."""
     out = work / "R.h5"
-    answer = subprocess.run([program, "run", path_of(protocol), "--specimen", specimen, "-o", out, "--force",
-                             *(word for each in settings for word in ("--set", each))], capture_output=True, text=True)
+    out.unlink(missing_ok=True)
+    done = run(program, "run", protocol, "--specimen", specimen, "-o", out, "--force", *sets(*settings), codes=None)
     if not out.exists():
-        return np.zeros(0), np.zeros(0), np.nan, answer.stderr
-    with h5py.File(out) as file:
-        records = file["records"]
-        errors, substeps = records["held_error"][:], records["substeps"][:]
-        if protocol in KEPT_VOLUME:
-            last = records["stage"][:] == records["stage"][-1]
-            volume = abs(np.linalg.det(records["deformation_gradient"][:]) - 1)
-            errors[last] = np.maximum(errors, volume * TOLERANCE / 1e-9)[last]
-        principal = np.linalg.eigvalsh(-records["stress_Pa"][:, :2, :2] if np.ptp(records["stress_Pa"][:, 2, 2]) == 0 else
-                                       -records["stress_Pa"][:])
+        return np.zeros(0), np.zeros(0), np.nan, done.stderr
+    errors, substeps, stage, gradient, stress = records(out, "held_error", "substeps", "stage", "deformation_gradient",
+                                                        "stress_Pa").values()
+    if protocol in KEPT_VOLUME:
+        last = stage == stage[-1]
+        volume = abs(np.linalg.det(gradient) - 1)
+        errors[last] = np.maximum(errors, volume * TOLERANCE / 1e-9)[last]
+    plane = np.ptp(stress[:, 2, 2]) == 0
+    principal = np.linalg.eigvalsh(-stress[:, :2, :2] if plane else -stress)
     major, minor = principal[:, -1], principal[:, 0]
     peak = int(np.argmax(major - minor))
-    angle = np.degrees(np.arcsin((major[peak] - minor[peak]) / (major[peak] + minor[peak])))
-    out.unlink()
-    return errors, substeps, angle, "" if answer.returncode == 0 else answer.stderr
+    return errors, substeps, degrees_of(major[peak], minor[peak]), "" if done.returncode == 0 else done.stderr
 
 
-def line(program, work, name, files, label):
-    protocol = "triaxial" if name in SPHERES else "biaxial"
-    errors, substeps, angles, ended = [], [], [], []
-    for file in files:
-        for pressure in RECIPES[name][2]:
-            e, s, angle, end = test(program, work, protocol, file, [f"test.pressure_Pa={pressure}"])
-            errors.append(e), substeps.append(s), angles.append(angle)
-            if end:
-                ended.append(end.strip()[-300:])
-    e, s = np.concatenate(errors), np.concatenate(substeps)
+def row(head, files, made, angles=False):
+    """Prints a row of tests (what test() gives of each); how many records and tests missed a bar."""
+    e, s = np.concatenate([each[0] for each in made]), np.concatenate([each[1] for each in made])
+    phi, ended = [each[2] for each in made], [each[3].strip()[-300:] for each in made if each[3]]
     off = int((e > TOLERANCE).sum())
-    print(f"{name:13} {label:7} {len(files):5} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
-          f"{s.max():10.4g} {np.nanmean(angles):8.2f} +- {np.nanstd(angles, ddof=1):5.2f}", flush=True)
+    print(f"{head} {len(files):4} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
+          + (f"{s.max():10.4g} {np.nanmean(phi):8.2f} +- {np.nanstd(phi, ddof=1):5.2f}" if angles else f"{s.max():12.4g}"), flush=True)
     for text in ended:
         print(f"#   {text}")
     return off + len(ended)
 
 
-def others(program, work):
+def line(program, name, files, label):
+    protocol = "triaxial" if name in SPHERES else "biaxial"
+    return row(f"{name:13} {label:7} ", files, [test(program, protocol, file, [f"test.pressure_Pa={pressure}"])
+                                                for file in files for pressure in RECIPES[name][2]], True)
+
+
+def others(program):
     print("test                   recipe  specs  records   off  error/tol  ended  sub-steps  in a record")
     missed = 0
     for protocol, recipes, pressure, settings in OTHERS:
         for name in recipes:
-            files = specimens(program, work, name, 3)
-            made = [test(program, work, protocol, file, [f"test.pressure_Pa={pressure}", *settings]) for file in files]
-            e, s = np.concatenate([each[0] for each in made]), np.concatenate([each[1] for each in made])
-            ended, off = [each[3].strip()[-300:] for each in made if each[3]], int((e > TOLERANCE).sum())
-            print(f"{protocol:22} {name:8} {len(files):4} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
-                  f"{s.max():12.4g}", flush=True)
-            for text in ended:
-                print(f"#   {text}")
-            missed += off + len(ended)
+            files = specimens(program, name, 3)
+            missed += row(f"{protocol:22} {name:8}", files,
+                          [test(program, protocol, file, [f"test.pressure_Pa={pressure}", *settings]) for file in files])
     return missed
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("program")
-    parser.add_argument("work", type=pathlib.Path)
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--before")
     parser.add_argument("--others", action=argparse.BooleanOptionalAction, default=True)
     parser.add_argument("recipes", nargs="*", default=list(RECIPES))
-    given = parser.parse_intermixed_args()
-    program, work = str(pathlib.Path(given.program).resolve()), given.work.resolve()
-    work.mkdir(parents=True, exist_ok=True)
-    (work / "sand.toml").write_text(SAND)
+    given = parser.parse_intermixed_args(harness.words)
+    harness.write(work / "sand.toml", SAND)
     print("recipe        build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
     missed = 0
     for name in given.recipes:
-        files = specimens(given.before or program, work, name, min(given.count, 5) if name in SPHERES else given.count)
+        files = specimens(given.before or harness.program, name,
+                          min(given.count, 5) if name in SPHERES else given.count)
         if given.before:
-            line(given.before, work, name, files, "before")
-        missed += line(program, work, name, files, "after" if given.before else "")
-    if given.others:
-        missed += others(program, work)
-    if missed:
-        sys.exit("held: bars missed")
+            line(given.before, name, files, "before")
+        missed += line(harness.program, name, files, "after" if given.before else "")
+    return missed + (others(harness.program) if given.others else 0)
 
 
-main()
+if __name__ == "__main__":
+    harness.main(main)

@@ -10,14 +10,10 @@ with the effective modulus E/(2 (1 - nu^2)) and the effective radius r1 r2/(r1 +
 the gap of its largest pull, 1.23 (gamma^2 R*/E*^2)^(1/3), where a held force would tear it off; in rvelab at 2.55 of the same,
 the end of the branch that is stable at a held gap. So the strain here is one at which no pair parts.
 """
-import csv
-import json
-import pathlib
-
 import numpy as np
 
 import interactions_packing as packings
-from verdict import verdict
+from harness import verdict
 
 YOUNG, POISSON, GAMMA, RADIUS, DENSITY = 1e7, 0.25, 0.3, 1e-3, 2650
 MODULUS = YOUNG / (2 * (1 - POISSON**2))
@@ -98,37 +94,20 @@ def force_of(law, gap, radius):
 
 def specimen(program, folder, largest, law):
     """An RVE at rest with adhesion in a cubic cell, whose pairs that stick all overlap: what a program that knows no more than
-    its places begins with too."""
+    its positions begins with too."""
     stem = folder / f"sticky_{largest}"
-    pathlib.Path(f"{stem}.toml").write_text(RECIPE.format(largest=largest))
-    packings.run([program, "pack", f"{stem}.toml", "-o", f"{stem}.h5", "--force"])
-    packings.run([program, "export", f"{stem}.h5", "--format", "csv", "-o", stem, "--force"])
-    lattice = np.array(json.loads(packings.run([program, "inspect", f"{stem}.h5", "--json"]))["lattice_m"])
-    edge = float(np.cbrt(np.linalg.det(lattice)))
-    with open(f"{stem}.particles.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    radii = [float(row["r"]) for row in rows]
-    places = np.array([[float(row[c]) for c in "xyz"] for row in rows]) @ np.linalg.inv(lattice).T * edge
-    pathlib.Path(f"{stem}.{law}.toml").write_text(STAGE.format(law=law, gamma=GAMMA,
-                                                              range="range_m = 1e-13" if law == "dmt" else ""))
+    edge, positions, radii = packings.cubic(program, stem, RECIPE.format(largest=largest))
+    stage = STAGE.format(law=law, gamma=GAMMA, range="range_m = 1e-13" if law == "dmt" else "")
     for _ in range(3):
-        with open(f"{stem}.cubic.csv", "w", encoding="utf-8") as file:
-            file.write("id,x,y,z,r\n")
-            file.writelines(f"{k},{float(x[0])!r},{float(x[1])!r},{float(x[2])!r},{radius!r}\n"
-                            for k, (x, radius) in enumerate(zip(places, radii)))
-        packings.run([program, "import", f"{stem}.cubic.csv", "--cell", f"{edge!r},{edge!r},{edge!r}", "--material",
-                      f"{stem}.material.toml", "-o", f"{stem}.cubic.h5", "--force"])
-        packings.run([program, "run", f"{stem}.{law}.toml", "--specimen", f"{stem}.cubic.h5", "-o", f"{stem}.{law}.h5",
-                      "--force"])
-        rve = packings.rvelab.Rve(f"{stem}.{law}.h5")
+        rve = packings.put(program, stem, edge, positions, radii, stage)
         start = rve.snapshot()
         rve.relax(1e-9, 200_000)
-        places = rve.array("grains/position_m")
+        positions = rve.array("grains/position_m")
     return packings.rvelab.Rve(start), edge
 
 
 def of_lammps(folder, lmp, law, x, r, edge, time_step):
-    """Positions and forces, from the same places: at once, and at rest under the strain."""
+    """Positions and forces, from the same positions: at once, and at rest under the strain."""
     inside = x - edge * np.floor(x / edge + 0.5)
     lines = ["sticky packing", "", f"{len(x)} atoms", "1 atom types",
              *(f"{-0.5 * edge!r} {0.5 * edge!r} {c}lo {c}hi" for c in "xyz"), "", "Atoms # sphere", ""]

@@ -4,7 +4,7 @@ import pathlib
 import numpy as np
 
 import interactions_packing as packings
-from verdict import verdict
+from harness import verdict
 
 YADE = pathlib.Path(__file__).with_name("interactions_bridges_yade.py")
 SURFACE_TENSION = 0.0728

@@ -22,13 +22,13 @@ import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/python"))
+import harness
+
+sys.path.insert(0, str(harness.ROOT / "tools/python"))
 import rvelab  # noqa: E402
 
 YADE = pathlib.Path(__file__).with_name("interactions_yade.py")
@@ -75,10 +75,7 @@ moment_factor = {factor}
 
 
 def run(words, **options):
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, **options)
-    if done.returncode != 0:
-        raise SystemExit(f"{words[0]}: {done.stdout[-600:]}{done.stderr[-600:]}")
-    return done.stdout
+    return harness.run(*words, **options).stdout
 
 
 def in_yade(script, folder, job):
@@ -89,34 +86,46 @@ def in_yade(script, folder, job):
     return json.loads(answer.read_text())
 
 
+def cubic(program, stem, recipe):
+    """A packing of spheres in a cubic cell, so that it is the same in all programs: edge, positions, radii. It was
+    packed in a cell that differs from it by some 1e-4."""
+    pathlib.Path(f"{stem}.toml").write_text(recipe)
+    run([program, "pack", f"{stem}.toml", "-o", f"{stem}.h5", "--force"])
+    run([program, "export", f"{stem}.h5", "--format", "csv", "-o", stem, "--force"])
+    lattice = np.array(json.loads(run([program, "inspect", f"{stem}.h5", "--json"]))["lattice_m"])
+    edge = float(np.cbrt(np.linalg.det(lattice)))
+    with open(f"{stem}.particles.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return (edge, np.array([[float(row[c]) for c in "xyz"] for row in rows]) @ np.linalg.inv(lattice).T * edge,
+            [float(row["r"]) for row in rows])
+
+
+def put(program, stem, edge, positions, radii, protocol):
+    """An RVE of these spheres after a protocol."""
+    with open(f"{stem}.apart.csv", "w", encoding="utf-8") as file:
+        file.write("id,x,y,z,r\n")
+        file.writelines(f"{k},{float(x[0])!r},{float(x[1])!r},{float(x[2])!r},{r!r}\n"
+                        for k, (x, r) in enumerate(zip(positions, radii)))
+    run([program, "import", f"{stem}.apart.csv", "--cell", f"{edge!r},{edge!r},{edge!r}", "--material",
+         f"{stem}.material.toml", "-o",
+         f"{stem}.apart.h5", "--force"])
+    pathlib.Path(f"{stem}.test.toml").write_text(protocol)
+    run([program, "run", f"{stem}.test.toml", "--specimen", f"{stem}.apart.h5", "-o", f"{stem}.put.h5", "--force"])
+    return rvelab.Rve(f"{stem}.put.h5")
+
+
 class Cemented:
     """A packing of spheres that stand a hundredth of their radii off each other (`shrunk`), bonded without force: the
-    bonds alone act. In a cubic cell, so that it is the same in all programs."""
+    bonds alone act."""
 
     def __init__(self, program, folder, seed=1, grains=300, largest=1e-3, tension=1e30, cohesion=1e30, factor=1.0,
                  shrunk=0.01):
         self.program, self.folder = program, pathlib.Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         stem = self.folder / f"{seed}_{grains}_{largest}"
-        pathlib.Path(f"{stem}.toml").write_text(RECIPE.format(seed=seed, grains=grains, largest=largest))
-        run([program, "pack", f"{stem}.toml", "-o", f"{stem}.h5", "--force"])
-        run([program, "export", f"{stem}.h5", "--format", "csv", "-o", stem, "--force"])
-        lattice = np.array(json.loads(run([program, "inspect", f"{stem}.h5", "--json"]))["lattice_m"])
-        edge = float(np.cbrt(np.linalg.det(lattice)))
-        with open(f"{stem}.particles.csv", encoding="utf-8") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-        cubic = edge * np.linalg.inv(lattice)  # differs from the identity by some 1e-4
-        with open(f"{stem}.apart.csv", "w", encoding="utf-8") as file:
-            file.write("id,x,y,z,r\n")
-            for row in rows:
-                x = cubic @ [float(row[c]) for c in "xyz"]
-                file.write(f"{row['id']},{x[0]!r},{x[1]!r},{x[2]!r},{(1 - shrunk) * float(row['r'])!r}\n")
-        run([program, "import", f"{stem}.apart.csv", "--cell", f"{edge!r},{edge!r},{edge!r}", "--material",
-             f"{stem}.material.toml", "-o", f"{stem}.apart.h5", "--force"])
-        pathlib.Path(f"{stem}.cement.toml").write_text(CEMENT.format(
+        edge, positions, radii = cubic(program, stem, RECIPE.format(seed=seed, grains=grains, largest=largest))
+        rve = put(program, stem, edge, positions, [(1 - shrunk) * r for r in radii], CEMENT.format(
             gap=GAP, modulus=MODULUS, ratio=SHEAR_RATIO, tension=tension, cohesion=cohesion, factor=factor))
-        run([program, "run", f"{stem}.cement.toml", "--specimen", f"{stem}.apart.h5", "-o", f"{stem}.bonds.h5", "--force"])
-        rve = rvelab.Rve(f"{stem}.bonds.h5")
         self.start, self.edge = rve.snapshot(), edge
         self.x, self.r, self.mass = (rve.array("grains/" + n) for n in ("position_m", "radius_m", "mass_kg"))
         bond = {name: rve.array("bonds/" + name) for name in ("i", "j", "radius_m", "normal_stiffness_Pa_m",

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """tools/validate interactions_peers: bonds and bridges beside YADE and LAMMPS, on one packing from one state.
 
 300 spheres that do not touch, bonded without force; what corresponds to what stands in interactions_packing.py.
@@ -17,48 +16,39 @@
    tables that Debian's package has not.
 4. JKR and DMT of a packing beside LAMMPS' pair_style granular (interactions_adhesion.py). Asked: 1e-8 of the mean force.
 
-    tools/validate.d/interactions_peers.py RVELAB FOLDER [LMP]
+    interactions_peers.py RVELAB WORK RESULTS [LMP]
 
 LMP is a LAMMPS with the packages BPM, GRANULAR and MOLECULE, which Debian's has not; without it the script builds one from
 Debian's source, half an hour of one core.
 """
-import os
 import pathlib
-import subprocess
-import sys
 import warnings
 
 import numpy as np
 
+import debian_source
+import harness
 import interactions_packing as packings
+from harness import program, verdict, work
 from interactions_adhesion import adhesion
 from interactions_bridges import bridges
-from verdict import tell_verdicts, verdict
 
-SOURCES = "Types: deb-src\nURIs: http://deb.debian.org/debian\nSuites: trixie\nComponents: main\n"
 GRADIENT = np.array([[0, 1.0, 0], [0, 0, 0], [0, 0, -0.5]])
 TENSION, STRAIN, RECORDS, STEPS, SEEDS = 1.5e6, 3e-3, 300, 6000, (1, 2, 3)
 
 
-def built(folder):
+def built():
     """LAMMPS with its bonded particles, serial, from Debian's source package."""
-    program = folder / "lammps" / "src" / "lmp_serial"
-    if program.exists():
-        return program
-    (folder / "lists/partial").mkdir(parents=True, exist_ok=True)
-    (folder / "source.sources").write_text(SOURCES + "Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg\n")
-    (folder / "status").touch()  # apt would look for the source of the LAMMPS that is installed
-    apt = ["apt-get", "-qq", "-o", f"Dir::Etc::SourceList={folder / 'none'}", "-o", f"Dir::Etc::SourceParts={folder}",
-           "-o", f"Dir::State::Lists={folder / 'lists'}", "-o", f"Dir::State::Status={folder / 'status'}"]
-    subprocess.run([*apt, "update"], check=True)
-    subprocess.run([*apt, "source", "--download-only", "--tar-only", "lammps"], cwd=folder, check=True)
-    source = folder / "lammps"
-    source.mkdir(exist_ok=True)
-    archive = next(folder.glob("lammps_*.orig.tar.xz"))
-    subprocess.run(["tar", "xJf", archive, "-C", source, "--strip-components=1", "--wildcards", "*/src/*"], check=True)
-    for words in (["yes-bpm", "yes-granular", "yes-molecule"], [f"-j{os.cpu_count()}", "serial"]):
-        subprocess.run(["make", *words], cwd=program.parent, check=True, capture_output=True)
-    return program
+    made = work / "lammps/src/lmp_serial"
+    if not made.exists():
+        debian_source.download("lammps", "trixie", work, "--tar-only")
+        (work / "lammps").mkdir(exist_ok=True)
+        harness.run("tar", "xJf", next(work.glob("lammps_*.orig.tar.xz")), "-C", work / "lammps",
+                    "--strip-components=1", "--wildcards",
+                    "*/src/*")
+        for words in (["yes-bpm", "yes-granular", "yes-molecule"], ["serial"]):
+            debian_source.make(made.parent, *words)
+    return made
 
 
 def odd(at, strains, weights):
@@ -169,18 +159,15 @@ def breaking(program, folder, lmp):
 
 def main():
     warnings.simplefilter("ignore", packings.rvelab.RvelabWarning)  # without stress at first
-    program, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    lmp = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else built(folder)
+    lmp = pathlib.Path(harness.words[0]).resolve() if harness.words else built()
     lammps = packings.run([lmp, "-h"]).split(" - ", 1)[1].split("\n")[0].strip()
     yade = packings.run(["yade", "--version"]).split(":")[1].strip()
-    print(f"# {packings.run([program, '--version']).strip()}, YADE {yade}, LAMMPS {lammps}\n")
-    force_network(program, folder, lmp)
-    breaking(program, folder, lmp)
-    bridges(program, folder)
-    adhesion(program, folder, lmp)
-    tell_verdicts()
+    print(f"# {harness.version()}, YADE {yade}, LAMMPS {lammps}\n")
+    force_network(program, work, lmp)
+    breaking(program, work, lmp)
+    bridges(program, work)
+    adhesion(program, work, lmp)
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

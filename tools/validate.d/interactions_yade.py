@@ -107,7 +107,7 @@ def times(scene):
     out = []
     for steps in JOB["ladder"]:
         O.stringToScene(scene)
-        load(0, 1)  # the first step sorts all grains anew
+        load(0, 1)  # the first step sorts all grains again
         begin = time.process_time()
         load(JOB["strain"], steps)
         out.append({"steps": steps, "seconds": time.process_time() - begin, "stress": stress()})

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
 """LAMMPS reads what `rvelab export` writes: the data file, then the dump over it, with equal positions.
 
 Needs lammps and python3-numpy (Debian).
-
-    tools/validate.d/lammps.py build/release/bin/rvelab
 """
 
-import pathlib
-import subprocess
 import sys
-import tempfile
 
 import numpy
 
-YADE = pathlib.Path(__file__).resolve().parents[2] / "tests/data/yade"
+import harness
+from harness import imported, run, rvelab, sets, work
 
 # Positions are set to zero between the two reads, so that those written back are the dump's.
 SCRIPT = """units si
@@ -40,38 +35,28 @@ def read(path):
 
 
 def main():
-    program = sys.argv[1]
-    with tempfile.TemporaryDirectory() as folder:
-        for name, dimension in (("dense", 2), ("hertz", 3)):
-            stem = pathlib.Path(folder) / name
-            specimen, test = f"{stem}.h5", f"{stem}.test.h5"
-            files = [str(YADE / f"{name}{suffix}") for suffix in (".particles.csv", ".contacts.csv", ".json")]
-            subprocess.run([program, "import", *files, "-o", specimen], check=True, stdout=subprocess.DEVNULL)
-            shear = ["--set", "stage.shear.to_strain=0.03", "--set", "stage.shear.record_every=0.03"]
-            subprocess.run([program, "run", "simple_shear", "--specimen", specimen, *shear, "-o", test], check=True,
-                           stdout=subprocess.DEVNULL)
-            for kind, suffix in (("lammps", "dump"), ("lammps-data", "data")):
-                subprocess.run([program, "export", test, "--format", kind, "-o", f"{stem}.{suffix}"], check=True,
-                               stdout=subprocess.DEVNULL)
-            step, box, atoms = read(stem.with_suffix(".dump"))
-            fields = "x y vx vy" if dimension == 2 else "x y z vx vy vz"
-            cutoff = 2.5 * atoms[:, 5].max()
-            script = SCRIPT.format(dimension=dimension, stem=stem, step=step, fields=fields, cutoff=cutoff)
-            (stem.with_suffix(".in")).write_text(script)
-            done = subprocess.run(["lmp", "-in", f"{stem}.in", "-log", "none"], capture_output=True, text=True)
-            if done.returncode != 0:
-                sys.exit(f"lammps: {name}: " + done.stdout[-500:] + done.stderr[:500])
-            _, box_back, atoms_back = read(stem.with_suffix(".back"))
-            if atoms_back.shape[0] != atoms.shape[0]:
-                sys.exit(f"lammps: {name}: {atoms_back.shape[0]} atoms of {atoms.shape[0]} came back")
-            # LAMMPS goes through fractional coordinates and back: the last bits are its own.
-            size = (box[:, 1] - box[:, 0]).max()
-            error = abs(atoms_back[:, 2:5] - atoms[:, 2:5]).max() / size
-            same = (abs(box_back - box).max() <= 1e-15 * size and error <= 1e-15 and (atoms_back[:, 5] == atoms[:, 5]).all())
-            if not same:
-                sys.exit(f"lammps: {name}: positions differ by {error} of the box")
-            print(f"lammps: {name}: {atoms.shape[0]} atoms read back, largest error {error:.1e} of the box")
+    for name, dimension in (("dense", 2), ("hertz", 3)):
+        stem, test = work / name, work / f"{name}.test.h5"
+        rvelab("run", "simple_shear", "--specimen", imported(name), "-o", test, "--force",
+               *sets("stage.shear.to_strain=0.03", "stage.shear.record_every=0.03"))
+        for kind, suffix in (("lammps", "dump"), ("lammps-data", "data")):
+            rvelab("export", test, "--format", kind, "-o", f"{stem}.{suffix}", "--force")
+        step, box, atoms = read(stem.with_suffix(".dump"))
+        fields = "x y vx vy" if dimension == 2 else "x y z vx vy vz"
+        (stem.with_suffix(".in")).write_text(SCRIPT.format(dimension=dimension, stem=stem, step=step, fields=fields,
+                                                           cutoff=2.5 * atoms[:, 5].max()))
+        run("lmp", "-in", f"{stem}.in", "-log", "none")
+        _, box_back, atoms_back = read(stem.with_suffix(".back"))
+        if atoms_back.shape[0] != atoms.shape[0]:
+            sys.exit(f"lammps: {name}: {atoms_back.shape[0]} atoms of {atoms.shape[0]} came back")
+        # LAMMPS goes through fractional coordinates and back: the last bits are its own.
+        size = (box[:, 1] - box[:, 0]).max()
+        error = abs(atoms_back[:, 2:5] - atoms[:, 2:5]).max() / size
+        if not (abs(box_back - box).max() <= 1e-15 * size and error <= 1e-15
+                and (atoms_back[:, 5] == atoms[:, 5]).all()):
+            sys.exit(f"lammps: {name}: positions differ by {error} of the box")
+        print(f"lammps: {name}: {atoms.shape[0]} atoms read back, largest error {error:.1e} of the box")
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

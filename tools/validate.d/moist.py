@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Moist grains in ensembles: moist.py RVELAB WORK [FIGURE] [--count N].
+"""Moist grains in ensembles: moist.py RVELAB WORK RESULTS [SPECIMENS].
 
 Strength: five dense specimens of 400 spheres of 0.1 to 0.15 mm, dry and at four suctions, triaxial compression at two pressures
 (protocol unsaturated_shear) to 3 %. Strength is the peak of the deviator, a mean over 0.3 % of strain. Per specimen and suction a straight
@@ -20,20 +19,13 @@ settled after a first run, which took the mean from 1 to 3 % of strain and the b
   Jennings and Knight 1975 by Clemence and Finbarr 1981: collapse of 0 to above 20 % of the volume, in five classes;
   Lawton, Fragaszy, Hardcastle 1989 (Geotech. Test. J. 12, 252-267): dense states collapse less or not.
 """
-import pathlib
-import subprocess
-
-import h5py
-import matplotlib
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import part
-from verdict import tell_verdicts
-from verdict import verdict as row_of_verdict
+import harness
+from harness import PROTOCOLS, degrees_of, envelope, in_words, once, protocol_without, records, results, sets, specimens, work
 
-PROTOCOLS = pathlib.Path("protocols").resolve()
+plt = harness.pyplot()
+COUNT = int(harness.words[0]) if harness.words else 5
 RECIPE = """[pack]
 name = "moist spheres"
 shape = "sphere"
@@ -59,46 +51,23 @@ STRETCHES = (1.0, 1.03, 1.08)
 
 
 def verdict(*words):
-    row_of_verdict(*words, width=92)
+    harness.verdict(*words, width=92)
 
 
-def call(*words):
-    done = subprocess.run([str(each) for each in words], capture_output=True, text=True)
-    if done.returncode not in (0, 3) and "doubtful" not in done.stderr:
-        raise SystemExit(f"{' '.join(map(str, words))}: {done.stderr}")
-    return done.stdout
-
-
-def packed(program, work, name, number, pressure, count):
+def packed(name, number, pressure):
     recipe = work / f"{name}.toml"
     recipe.write_text(RECIPE.format(number=number, pressure=pressure))
-    files = [work / f"{name}_{seed}.h5" for seed in range(1, count + 1)]
-    for seed, path in enumerate(files, 1):
-        if not path.exists():
-            call(program, "pack", recipe, "-o", path, "--set", f"pack.seed={seed}")
-    return files
+    return specimens(recipe, name, COUNT)
 
 
-def dry_protocol(work):
-    """unsaturated_shear less its stage of water."""
-    stages = (PROTOCOLS / "unsaturated_shear.toml").read_text().split("[[stage]]")
-    path = work / "dry_shear.toml"
-    path.write_text("[[stage]]".join(each for each in stages if 'kind = "water"' not in each))
-    return path
-
-
-def sheared(program, work, specimen, pressure, suction):
+def sheared(specimen, pressure, suction):
     """Strength and stresses of one test; suction 0: dry."""
-    out = work / f"{specimen.stem}_{pressure:g}_{suction:g}_shear.h5"
-    if not out.exists():
-        water = ["--set", f"stage.water.suction_Pa={suction:g}"] if suction else []
-        call(program, "run", PROTOCOLS / "unsaturated_shear.toml" if suction else dry_protocol(work), "--specimen", specimen, "-o", out, "--set",
-             f"test.pressure_Pa={pressure:g}", "--set", "stage.compression.record_every=0.001", "--set",
-             "stage.compression.to_strain=0.03", *water)
-    with h5py.File(out) as file:
-        records = file["records"]
-        last = records["stage"][:] == records["stage"][:].max()
-        read = {name: records[name][:][last] for name in ("strain", "stress_Pa", "bridge_stress_Pa", "bridges", "saturation")}
+    protocol = PROTOCOLS / "unsaturated_shear.toml" if suction else protocol_without("unsaturated_shear", "water")
+    out = once(work / f"{specimen.stem}_{pressure:g}_{suction:g}_shear.h5", "run", protocol, "--specimen", specimen,
+               *sets(f"test.pressure_Pa={pressure:g}", "stage.compression.record_every=0.001",
+                     "stage.compression.to_strain=0.03",
+                     *([f"stage.water.suction_Pa={suction:g}"] if suction else [])), codes=None)
+    read = records(out, "strain", "stress_Pa", "bridge_stress_Pa", "bridges", "saturation", last=True)
     stress, bridge = -read["stress_Pa"], -read["bridge_stress_Pa"]
     parts = lambda each: (each[:, 2, 2], 0.5 * (each[:, 0, 0] + each[:, 1, 1]))
     sigma_1, sigma_3 = parts(stress)
@@ -110,40 +79,30 @@ def sheared(program, work, specimen, pressure, suction):
     bridge_1, bridge_3 = parts(bridge)
     tension = -np.trace(bridge, axis1=1, axis2=2) / 3
     return {"sigma_1": sigma_1[about].mean(), "sigma_3": sigma_3[about].mean(), "q": q[about].mean(), "strain": read["strain"][peak],
-            "effective_phi": angle(effective_1[about].mean(), effective_3[about].mean()), "p_c": tension[0],
+            "effective_phi": degrees_of(effective_1[about].mean(), effective_3[about].mean()), "p_c": tension[0],
             "p_c_sheared": tension[about].mean(), "p_c_late": tension[sheared].mean(), "saturation": read["saturation"][0], "bridges": read["bridges"][0],
             "bridges_sheared": read["bridges"][about].mean(), "bridges_late": read["bridges"][sheared].mean(),
             "anisotropy": 0 if suction == 0 else ((bridge_1 - bridge_3) / tension)[sheared].mean(),
             "strains": read["strain"], "curve": q}
 
 
-def angle(sigma_1, sigma_3):
-    return np.degrees(np.arcsin((sigma_1 - sigma_3) / (sigma_1 + sigma_3)))
+def envelope_of(rows):
+    return envelope([row["sigma_3"] for row in rows], [row["sigma_1"] for row in rows])
 
 
-def envelope(rows):
-    """Cohesion (Pa), friction angle (degrees) of the tests of one specimen."""
-    k, b = np.polyfit([row["sigma_3"] for row in rows], [row["sigma_1"] for row in rows], 1)
-    return b / (2 * np.sqrt(k)), np.degrees(np.arcsin((k - 1) / (k + 1)))
-
-
-def told(values, scale=1.0, digits=1):
-    values = np.asarray(values, float) * scale
-    return f"{values.mean():.{digits}f} +- {values.std(ddof=1) / np.sqrt(len(values)):.{digits}f}"
-
-
-def strength(program, work, count):
-    files = packed(program, work, "dense", 400, 2e3, count)
-    rows = {(s, p): [sheared(program, work, each, p, s) for each in files] for s in (0, *SUCTIONS) for p in PRESSURES}
-    print(f"\nunsaturated_shear, {count} specimens of 400 spheres of 0.1 to 0.15 mm, mean +- standard error of the mean\n")
+def strength():
+    files = packed("dense", 400, 2e3)
+    rows = {(s, p): [sheared(each, p, s) for each in files] for s in (0, *SUCTIONS) for p in PRESSURES}
+    print(f"\nunsaturated_shear, {COUNT} specimens of 400 spheres of 0.1 to 0.15 mm, mean +- standard error of the mean\n")
     print("suction, kPa  pressure, kPa  q, kPa          effective phi, deg  p_c at rest, Pa  at the peak    bridges at rest, at the peak")
     for (s, p), each in rows.items():
         column = {name: [row[name] for row in each] for name in each[0]}
-        print(f"{s / 1e3:8.0f}      {p / 1e3:8.0f}       {told(column['q'], 1e-3, 2):14s}  {told(column['effective_phi']):18s}  "
-              f"{told(column['p_c'], 1, 0):15s}  {told(column['p_c_sheared'], 1, 0):13s}  {told(column['bridges'], 1, 0)}, "
-              f"{told(column['bridges_sheared'], 1, 0)}")
-    fits = {s: np.array([envelope([rows[s, p][k] for p in PRESSURES]) for k in range(count)]) for s in (0, *SUCTIONS)}
-    print(f"\nintercept of the dry envelope: {told(fits[0][:, 0], 1, 0)} Pa")
+        print(f"{s / 1e3:8.0f}      {p / 1e3:8.0f}       {in_words(column['q'], 1e-3, 2):14s}  {in_words(column['effective_phi']):18s}  "
+              f"{in_words(column['p_c'], 1, 0):15s}  {in_words(column['p_c_sheared'], 1, 0):13s}  {in_words(column['bridges'], 1, 0)}, "
+              f"{in_words(column['bridges_sheared'], 1, 0)}")
+    fits = {s: np.array([envelope_of([rows[s, p][k] for p in PRESSURES]) for k in range(COUNT)])
+            for s in (0, *SUCTIONS)}
+    print(f"\nintercept of the dry envelope: {in_words(fits[0][:, 0], 1, 0)} Pa")
     dry = fits[0][:, 0].copy()
     for each in fits.values():
         each[:, 0] -= dry
@@ -152,20 +111,22 @@ def strength(program, work, count):
         low = rows[s, PRESSURES[0]]
         mean = lambda name: np.mean([row[name] for row in low])
         tail = "" if s == 0 else (f"{mean('saturation'):.5f}     {mean('p_c') / s:.4f}             "
-                                  f"{told([row['p_c_sheared'] * np.tan(np.radians(fits[0][k][1])) for k, row in enumerate(low)], 1, 0):20s}  "
-                                  f"{told([row['anisotropy'] for row in low], 1, 3)}")
-        print(f"{s / 1e3:8.0f}      {told(each[:, 0], 1, 0):13s}  {told(each[:, 1]):13s}  {tail}")
+                                  f"{in_words([row['p_c_sheared'] * np.tan(np.radians(fits[0][k][1])) for k, row in enumerate(low)], 1, 0):20s}  "
+                                  f"{in_words([row['anisotropy'] for row in low], 1, 3)}")
+        print(f"{s / 1e3:8.0f}      {in_words(each[:, 0], 1, 0):13s}  {in_words(each[:, 1]):13s}  {tail}")
     print()
-    judge_strength(rows, fits, count)
+    judge_strength(rows, fits)
     return rows, fits
 
 
-def judge_strength(rows, fits, count):
+def judge_strength(rows, fits):
     low = PRESSURES[0]
     mean = lambda name, s: np.mean([row[name] for row in rows[s, low]])
     c = np.array([fits[s][:, 0].mean() for s in SUCTIONS])
-    stronger = sum(all(rows[s, p][k]["q"] > rows[0, p][k]["q"] for s in SUCTIONS) for p in PRESSURES for k in range(count))
-    verdict("moist specimens are stronger than the same dry", f"{stronger} of {len(PRESSURES) * count}", "all", stronger == len(PRESSURES) * count)
+    stronger = sum(all(rows[s, p][k]["q"] > rows[0, p][k]["q"] for s in SUCTIONS) for p in PRESSURES
+                   for k in range(COUNT))
+    verdict("moist specimens are stronger than the same dry", f"{stronger} of {len(PRESSURES) * COUNT}", "all",
+            stronger == len(PRESSURES) * COUNT)
     water = np.array([mean("saturation", s) for s in SUCTIONS])[::-1]
     slopes = np.diff(c[::-1]) / np.diff(water)
     rising = bool((np.diff(c[::-1])[:-1] > 0).all() and (np.diff(slopes) < 0).all())
@@ -198,28 +159,27 @@ def judge_strength(rows, fits, count):
             bool((np.diff(np.abs(anisotropy)) > 0).all()))
 
 
-def flooded(program, work, specimen, stretch, pressure):
+def flooded(specimen, stretch, pressure):
     """Void ratio moist and flooded."""
-    out = work / f"{specimen.stem}_{stretch:g}_{pressure:g}_wetted.h5"
-    if not out.exists():
-        call(program, "run", PROTOCOLS / "collapse_on_wetting.toml", "--specimen", specimen, "-o", out, "--set", f"test.pressure_Pa={pressure:g}", "--set",
-             f"stage.bulking.gradients=[[{stretch}, 0, 0, 0, {stretch}, 0, 0, 0, {stretch}]]")
-    with h5py.File(out) as file:
-        e = file["records/void_ratio"][:]
-    return e[-2], e[-1]
+    out = once(work / f"{specimen.stem}_{stretch:g}_{pressure:g}_wetted.h5", "run",
+               PROTOCOLS / "collapse_on_wetting.toml", "--specimen",
+               specimen, *sets(f"test.pressure_Pa={pressure:g}",
+                               f"stage.bulking.gradients=[[{stretch}, 0, 0, 0, {stretch}, 0, 0, 0, {stretch}]]"),
+                               codes=None)
+    return records(out, "void_ratio")["void_ratio"][-2:]
 
 
-def collapse(program, work, count):
-    files = packed(program, work, "loose", 200, 1e3, count)
+def collapse():
+    files = packed("loose", 200, 1e3)
     cases = [(stretch, 1e3) for stretch in STRETCHES] + [(STRETCHES[-1], 4e3)]
-    found = {case: np.array([flooded(program, work, each, *case) for each in files]) for case in cases}
-    print(f"\ncollapse_on_wetting, {count} specimens of 200 spheres of 0.1 to 0.15 mm, mean +- standard error of the mean\n")
+    found = {case: np.array([flooded(each, *case) for each in files]) for case in cases}
+    print(f"\ncollapse_on_wetting, {COUNT} specimens of 200 spheres of 0.1 to 0.15 mm, mean +- standard error of the mean\n")
     print("stretched, %  pressure, kPa  e moist          e flooded        collapse, % of the volume")
     strains = {}
     for (stretch, pressure), e in found.items():
         strains[stretch, pressure] = 100 * (e[:, 0] - e[:, 1]) / (1 + e[:, 0])
-        print(f"{100 * (stretch - 1):8.0f}      {pressure / 1e3:8.0f}       {told(e[:, 0], 1, 3):15s}  {told(e[:, 1], 1, 3):15s}  "
-              f"{told(strains[stretch, pressure], 1, 2)}")
+        print(f"{100 * (stretch - 1):8.0f}      {pressure / 1e3:8.0f}       {in_words(e[:, 0], 1, 3):15s}  {in_words(e[:, 1], 1, 3):15s}  "
+              f"{in_words(strains[stretch, pressure], 1, 2)}")
     print()
     mean = [strains[stretch, 1e3].mean() for stretch in STRETCHES]
     verdict("collapse by looseness (Lawton): grows, %", ", ".join(f"{each:.2f}" for each in mean), "rising", bool((np.diff(mean) > 0).all()))
@@ -239,8 +199,7 @@ def draw(path, rows, fits, found, strains):
         axes[0].plot(100 * each[0]["strains"], np.mean([row["curve"] for row in each], axis=0) / 1e3, color=plt.cm.viridis(0.2 * k),
                      label=f"{s / 1e3:.0f} kPa" if s else "dry")
     axes[0].set_title(f"{low / 1e3:.0f} kPa: mean of {len(rows[0, low])}", fontsize=10, loc="left")
-    axes[0].set_xlabel("axial strain (%)")
-    axes[0].set_ylabel("q (kPa)")
+    axes[0].set(xlabel="axial strain (%)", ylabel="q (kPa)")
     axes[0].legend(fontsize=8, title="suction", title_fontsize=8)
     suction = np.array(SUCTIONS) / 1e3
     error = lambda values: np.std(values, ddof=1) / np.sqrt(len(values))
@@ -250,8 +209,7 @@ def draw(path, rows, fits, found, strains):
                  "k--", label=r"$p_c \tan\varphi_{dry}$")
     axes[1].set_xscale("log")
     axes[1].set_ylim(bottom=0)
-    axes[1].set_xlabel("suction (kPa)")
-    axes[1].set_ylabel("Pa")
+    axes[1].set(xlabel="suction (kPa)", ylabel="Pa")
     axes[1].legend(fontsize=8)
     water = [np.mean([row["saturation"] for row in rows[s, low]]) for s in SUCTIONS]
     axes[2].loglog(water, [np.mean([row["p_c"] for row in rows[s, low]]) / s for s in SUCTIONS], "o-", label=r"$\chi = p_c/s$")
@@ -261,20 +219,15 @@ def draw(path, rows, fits, found, strains):
     for (stretch, pressure), e in found.items():
         axes[3].plot(e[:, 0], strains[stretch, pressure], "o" if pressure < 2e3 else "s", markersize=4,
                      label=f"{pressure / 1e3:.0f} kPa, stretched {100 * (stretch - 1):.0f} %")
-    axes[3].set_xlabel("void ratio, moist")
-    axes[3].set_ylabel("collapse (% of the volume)")
+    axes[3].set(xlabel="void ratio, moist", ylabel="collapse (% of the volume)")
     axes[3].legend(fontsize=7)
     figure.savefig(path, dpi=80)
 
 
 def main():
-    options = part.options(__doc__)
-    rows, fits = strength(options.program, options.work, options.count)
-    found, strains = collapse(options.program, options.work, options.count)
-    if options.figure:
-        draw(options.figure, rows, fits, found, strains)
-    tell_verdicts()
+    rows, fits = strength()
+    draw(results / "moist.png", rows, fits, *collapse())
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

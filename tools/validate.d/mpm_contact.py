@@ -5,16 +5,12 @@
 An elastic block at rest under its weight on a half-space, and under a plate; a rough footing on weightless soil beside
 N_q; a pipe pushed into soil; the collapse of a column. Half a minute of one core."""
 
-import pathlib
-import shutil
-import subprocess
-import sys
-
-import h5py
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-mpm, folder = pathlib.Path(sys.argv[1]).with_name("rvelab-mpm"), pathlib.Path(sys.argv[2])
+import harness
+import mpm
+from harness import PROTOCOLS, sets, work
+
 KINDS = ("nodes", "surface")
 
 BLOCK = """
@@ -65,50 +61,30 @@ size_m = [2, 0.6]
 motion = [[0, 0, 0], [0.1, 0, -0.002]]
 contact = "{contact}"
 """
-SOIL = """[[material]]
-name = "soil"
-kind = "mohr_coulomb"
-density_kg_m3 = 2000
-young_modulus_Pa = 20e6
-friction_angle_deg = 30
-cohesion_Pa = {cohesion}
-
-"""
-
-
 def run(name, scene, *settings):
-    """History of a run by columns, and its last frame."""
-    place, path = folder / name, folder / f"{name}.toml"
-    shutil.rmtree(place, ignore_errors=True)
+    """History of a run by columns; stress and position of the points at its end."""
+    path = work / f"{name}.toml"
     path.write_text(scene)
-    subprocess.run([mpm, path, "-o", place, "-q", "-j", "1", *(word for each in settings for word in ("--set", each))],
-                   check=True, stdout=subprocess.DEVNULL)
-    history = place / "history.csv"
-    names = history.open().readline().strip().split(",")
-    return dict(zip(names, np.atleast_2d(np.genfromtxt(history, delimiter=",", skip_header=1)).T)), sorted(place.glob("points_*.h5"))[-1]
+    return mpm.run(name, path, "-j", "1", *sets(*settings))[0], mpm.last_frame(name, "stress_Pa", "position_m")
 
 
 def block(contact, height, plate):
-    told = dict(height=height, top=1 + height, contact=contact, duration=0.55 if plate else 3, centre=1.3 + height,
+    values = dict(height=height, top=1 + height, contact=contact, duration=0.55 if plate else 3, centre=1.3 + height,
                 gravity=0 if plate else -9.81, initial='stress = "zero"' if plate else
                 f'stress = "geostatic"\nsurface_m = {1 + height}\nearth_pressure_ratio = {0.3 / 0.7}')
-    h, last = run("block", (BLOCK + (PLATE if plate else "")).format(**told))
-    with h5py.File(last) as file:
-        stress, y = -file["stress_Pa"][()][:, 4], file["position_m"][()][:, 1]
+    h, last = run("block", (BLOCK + (PLATE if plate else "")).format(**values))
+    stress, position = last
+    stress, y = -stress[:, 4], position[:, 1]
     if plate:
         return np.mean(stress) / (-h["plate.displacement_y_m"][-1] * 1e6 * 0.7 / (1.3 * 0.4)) - 1
     return np.max(abs(stress - 2000 * 9.81 * (1 + height - y))) / (2000 * 9.81)
 
 
-def soil(name, cohesion):
-    """A scene of grains with Mohr-Coulomb soil in their place, and without its cases."""
-    text = (ROOT / "protocols/mpm" / name).read_text().split("\n[case.")[0]
-    begin, end = text.index("[[material]]"), text.index("[[region]]")
-    return (text[:begin] + SOIL.format(cohesion=cohesion) + text[end:]).replace('"dense"', '"soil"')
+def soil(scene, cohesion):
+    return mpm.with_soil("soil", scene, mpm.mohr_coulomb(30, cohesion=cohesion)).read_text()
 
 
 def main():
-    folder.mkdir(parents=True, exist_ok=True)
     heights = (0.0, 0.02, 0.037, 0.05, 0.08)
     print("elastic block, 5 x 10 cells of 0.1 m with four points each, its base at a height of (m)\n"
           + " " * 47 + "".join(f"{height:<8g}" for height in heights))
@@ -121,26 +97,24 @@ def main():
     for cell, contact in ((0.25, "nodes"), (0.25, "surface"), (0.125, "nodes"), (0.125, "surface")):
         h, _ = run("footing_soil", soil("footing.toml", 0), f"grid.cell_m={cell}", f"body.footing.contact={contact}",
                    "body.footing.motion=[[0, 0, 0], [1, 0, -0.02]]", "time.duration_s=12", "output.history_every_s=0.05")
-        load = np.convolve(1 + h["footing.force_y_N"] / 20e3, np.ones(5) / 5, mode="same")
+        load = mpm.moving_mean(1 + h["footing.force_y_N"] / 20e3, 5)
         print(f"cells of {cell:<6g} {contact:<8}"
               + "".join(f"{np.interp(depth, -h['footing.displacement_y_m'] / 2, load):<8.1f}" for depth in depths), flush=True)
     print("\npipe pushed 0.8 m into the same soil: largest force (kN/m)")
     for cell, contact in ((0.25, "nodes"), (0.25, "surface"), (0.125, "nodes"), (0.125, "surface")):
         h, _ = run("pipe_soil", soil("pipe.toml", 100), f"grid.cell_m={cell}", f"body.pipe.contact={contact}",
                    "time.duration_s=0.9")
-        window = max(1, round(0.05 / np.median(np.diff(h["time_s"]))))
-        force = np.convolve(h["pipe.force_y_N"] / 1e3, np.ones(window) / window, mode="valid")
+        force = mpm.moving_mean(h["pipe.force_y_N"] / 1e3, mpm.rows_in(h["time_s"], 0.05), "valid")
         print(f"cells of {cell:<6g} {contact:<8}{force.max():.0f}", flush=True)
     print("\ncolumn of soil (column_soil.toml): largest kinetic energy, dissipated; run-out by gaps of 1/2, 3/4, 1 cell")
     for contact in KINDS:
-        h, last = run("column_of_soil", (ROOT / "protocols/mpm/column_soil.toml").read_text(), f"body.base.contact={contact}")
-        with h5py.File(last) as file:
-            x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
-        ends = [next((a for a, b in zip(x, x[1:]) if b - a > gap * cell), x[-1]) - 1 for gap in (0.5, 0.75, 1)]
+        h, last = run("column_of_soil", (PROTOCOLS / "mpm/column_soil.toml").read_text(),
+                      f"body.base.contact={contact}")
+        ends = [mpm.front(last[1], 1 / 16, gap) - 1 for gap in (0.5, 0.75, 1)]
         whole = 2190 * 9.81 * 0.5
         print(f"{contact:<8} {h['kinetic_J'].max() / whole:.3f}  {(-h['potential_J'] - h['kinetic_J'])[-1] / whole:.2f}  "
               + "  ".join(f"{end:.2f}" for end in ends))
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

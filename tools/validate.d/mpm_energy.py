@@ -1,4 +1,5 @@
-"""tools/validate mpm_energy: mutated scenes must not end successfully with energy from nothing. mpm_energy.py RVELAB FOLDER [NUMBER]
+"""tools/validate mpm_energy: mutated scenes must not end successfully with energy from nothing. mpm_energy.py RVELAB
+WORK RESULTS [NUMBER]
 
 NUMBER (1000) scenes: those of protocols/mpm, with a coarse mesh and small specimens, and one to three of their numbers
 changed by seed: by up to three powers of ten, in sign, to nothing or to what no soil bears. Each is refused (2), ends by
@@ -6,21 +7,19 @@ itself with a message (1), or ends (0); after some seconds it is stopped (130). 
 stopped: kinetic and stored energy beyond what gravity, bodies and pressure gave, over the largest of them."""
 
 import collections
-import pathlib
 import random
 import re
 import shutil
 import signal
 import subprocess
-import sys
 
 import h5py
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-rvelab, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-number = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
-mpm = rvelab.with_name("rvelab-mpm")
+import harness
+from harness import PROTOCOLS, columns, mpm, sets, work
+
+number = int(harness.words[0]) if harness.words else 1000
 SECONDS = 3
 ALLOWED = 0.5
 SCENES = {"biaxial": ("grid.cell_m=0.25", "time.duration_s=0.3"),
@@ -35,9 +34,9 @@ NUMBER = re.compile(r"(?<![\w.\"])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.\"])")
 
 def mutated(text, rng):
     """One to three numbers of the scene changed; the others, and all words, stay."""
-    places = [found for found in NUMBER.finditer(text) if "dimension" not in text[text.rfind("\n", 0, found.start()):found.start()]]
+    numbers = [found for found in NUMBER.finditer(text) if "dimension" not in text[text.rfind("\n", 0, found.start()):found.start()]]
     changed = []
-    for found in sorted(rng.sample(places, rng.randint(1, 3)), key=lambda each: -each.start()):
+    for found in sorted(rng.sample(numbers, rng.randint(1, 3)), key=lambda each: -each.start()):
         value = float(found.group())
         kind = rng.random()
         if kind < 0.7:
@@ -55,9 +54,7 @@ def mutated(text, rng):
 
 def unexplained(run):
     """The largest share of energy from nothing, from a history and the first frame."""
-    lines = (run / "history.csv").read_text().splitlines()
-    names = lines[0].split(",")
-    h = dict(zip(names, np.array([[float(each or "nan") for each in line.split(",")] for line in lines[1:]]).T))
+    h = columns(run / "history.csv")
     if not all(np.isfinite(values).all() for values in h.values()):
         return np.inf
     with h5py.File(run / "points_0000.h5") as file:
@@ -71,13 +68,12 @@ def unexplained(run):
 
 def one(name, k, run):
     rng = random.Random(1000 * k + 1)
-    text, changed = mutated((ROOT / f"protocols/mpm/{name}.toml").read_text().split("\n[case.")[0], rng)
-    scene = folder / "scene.toml"
+    text, changed = mutated((PROTOCOLS / f"mpm/{name}.toml").read_text().split("\n[case.")[0], rng)
+    scene = work / "scene.toml"
     scene.write_text(text)
     shutil.rmtree(run, ignore_errors=True)
     settings = [each for each in SCENES[name] if not any(each.split(".")[1].split("=")[0] in line for line in changed)]
-    command = [mpm, scene, "-o", run, "--specimens", folder, "-q", "-j", "1"]
-    command += [word for each in settings for word in ("--set", each)]
+    command = [mpm, scene, "-o", run, "--specimens", work, "-q", "-j", "1", *sets(*settings)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     try:
         errors = process.communicate(timeout=SECONDS)[1]
@@ -93,14 +89,11 @@ def one(name, k, run):
 
 
 def main():
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     for file, pressure in (("dense", 100e3), *((f"column_{p}Pa", p) for p in (2685, 8056, 13427, 18798))):
-        subprocess.run([rvelab, "pack", ROOT / "protocols/pack_dense.toml", "-o", folder / f"{file}.h5", "--set", "pack.number=60", "--set",
-                        f"target.pressure_Pa={pressure}"], check=True, stdout=subprocess.DEVNULL)
+        harness.packed("pack_dense", file, "pack.number=60", f"target.pressure_Pa={pressure}")
     names, counts, worst, bad = sorted(SCENES), collections.Counter(), collections.defaultdict(float), 0
     for k in range(number):
-        name, run = names[k % len(names)], folder / "run"
+        name, run = names[k % len(names)], work / "run"
         code, errors, changed = one(name, k, run)
         what = {0: "ended", 1: "ended with words", 2: "refused", 130: "stopped after some seconds"}.get(code, "crashed")
         counts[what] += 1
@@ -113,8 +106,8 @@ def main():
     print("largest share of energy from nothing: " + ", ".join(
         f"{100 * worst[what]:.0f} % ({what})" for what in sorted(worst) if what in ("ended", "stopped after some seconds"))
           + f"; allowed {100 * ALLOWED:.0f} %")
-    sys.exit(1 if bad else 0)
+    return bad
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

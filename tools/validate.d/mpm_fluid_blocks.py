@@ -5,12 +5,9 @@ import tomllib
 import h5py
 import numpy as np
 
-import mpm as scenes
-from mpm_fluid_runs import (
-    GRAVITY, SOLIDS, WATER, cell_test, columns, costs, elastic_scene, frame_at, frames, mean_of, run,
-    void_ratio, watched)
-from mpm import folder, specimen
-from verdict import verdict
+from harness import PROTOCOLS, columns, sets, verdict
+from mpm import folder, frames, specimen
+from mpm_fluid_runs import GRAVITY, SOLIDS, WATER, cell_test, costs, elastic_scene, frame_at, mean_of, run, void_ratio, watched
 
 
 # --- consolidation ----------------------------------------------------------------------------------------------------
@@ -67,8 +64,7 @@ def oedometer(packed):
     small = stages[sorted(stages)[-2]]
     fit = lambda i: np.polyfit(strains[small], stress[small][:, i, i], 1)[0] / 1e6
     secant = 10e3 / np.interp(axial[0] + 10e3, axial, strain) / 1e6
-    with h5py.File(folder / f"{packed}.h5") as file:
-        return fit(1), fit(0), secant
+    return fit(1), fit(0), secant
 
 
 def consolidation():
@@ -77,7 +73,7 @@ def consolidation():
     rows = []
     for seed in range(1, 6):
         name = "consolidation" if seed == 1 else f"consolidation_{seed}"
-        specimen(name, "--set", f"pack.seed={seed}", recipe="pack_consolidation")
+        specimen(name, f"pack.seed={seed}", recipe="pack_consolidation")
         found = oedometer(name)
         rows.append((void_ratio(name), *found))
         print(f"{seed:<8}" + "{:<8.4f}{:<8.2f}{:<8.2f}{:.2f}".format(*rows[-1]))
@@ -91,25 +87,25 @@ def consolidation():
     verdict("K - 2 G/3 = C12 at small strains, MPa", f"{mean[2]:.2f} +- {scatter[2]:.2f}", "3.93 within 15 %",
             abs(mean[2] / 3.93 - 1) < 0.15)
 
-    run("consolidation_grains", "consolidation.toml", "--case", "grains", "--set",
-        "output.watched_points_m=[[0.005, 0.005], [0.005, 0.505], [0.005, 0.995]]")
+    run("consolidation_grains", "consolidation.toml", "--case", "grains",
+        *sets("output.watched_points_m=[[0.005, 0.005], [0.005, 0.505], [0.005, 0.995]]"))
     w = watched("consolidation_grains")
     e, _, _, secant = rows[0]
     exact = Column(secant * 1e6, e / (1 + e), 1e-3, 10e3)
-    places = [w[f"{k}.y_m"][0] for k in range(3)]
+    heights = [w[f"{k}.y_m"][0] for k in range(3)]
     print("\n50 cells with four points of the specimen of seed 1, k 1e-3 m/s: degree of consolidation (settlement of the\n"
-          f"top point over the final one) and pressure over 10 kPa at {places[0]:g} and {places[1]:g} m; exact: of\n"
+          f"top point over the final one) and pressure over 10 kPa at {heights[0]:g} and {heights[1]:g} m; exact: of\n"
           f"M = {secant:.2f} MPa\n\n"
           "T       t (s)     U       exact   p(0)    exact   p(1/2)  exact")
     worst = np.zeros(3)
     for T in T_PRINTED:
         t = T / exact.diffusivity
-        final = exact.load * places[2] / exact.modulus
+        final = exact.load * heights[2] / exact.modulus
         settled = w["2.y_m"][0] - np.interp(t, w["time_s"], w["2.y_m"])
-        pairs = [(settled / final, exact.settlement(places[2], t) / final)]
+        pairs = [(settled / final, exact.settlement(heights[2], t) / final)]
         for k in (0, 1):
             pairs.append((np.interp(t, w["time_s"], w[f"{k}.pore_pressure_Pa"]) / 10e3,
-                          exact.pressure(places[k], t) / 10e3))
+                          exact.pressure(heights[k], t) / 10e3))
         if t <= w["time_s"][-1]:
             worst = np.maximum(worst, [abs(a - b) for a, b in pairs])
             print(f"{T:<8g}{t:<10.5f}" + "".join(f"{a:<8.4f}{b:<8.4f}" for a, b in pairs))
@@ -241,7 +237,7 @@ def drained():
 
 def held_by_plates(lasts):
     """History of the cyclic block without water between four smooth plates that keep its volume: its mean strain is the cell's."""
-    text = (scenes.ROOT / "protocols/mpm/undrained_element.toml").read_text()
+    text = (PROTOCOLS / "mpm/undrained_element.toml").read_text()
     rows = tomllib.loads(text)["case"]["cyclic"]["boundary"][2]["motion"]
     times = np.arange(0, lasts + 1e-9, 0.005)
     speed = np.interp(times, [row[0] for row in rows], [row[2] for row in rows])
@@ -273,8 +269,8 @@ def cyclic():
                                             "stage.compression.to_strain=0.002",
                                             "stage.compression.cycles=10", "stage.compression.record_every=1e-4",
                                             "solver.target_unbalanced=0")
-        h, _ = run(f"cyclic_{soil}", "undrained_element.toml", "--case", "cyclic", "--set",
-                   f'material.soil.specimens=["{soil}.h5"]', "--set", f"time.duration_s={duration}")
+        h, _ = run(f"cyclic_{soil}", "undrained_element.toml", "--case", "cyclic",
+                   *sets(f'material.soil.specimens=["{soil}.h5"]', f"time.duration_s={duration}"))
         way = lambda strain: np.concatenate([[0], np.cumsum(abs(np.diff(strain)))])
         cell_way, cell = way(strain), (axial + side) / 2
         block_way, block = way(h["top.displacement_y_m"]), mean_of(watched(f"cyclic_{soil}"), "p_Pa")
@@ -314,13 +310,13 @@ def loose_cycles(difference, grid, block, cell):
     held = watched("cyclic_plates_loose")
     found = [cycles_until(*block), cycles_until(way, mean_of(held, "p_Pa")), cycles_until(*cell)]
     singles = [cycles_until(block[0], p) for p in each]
-    told = ", ".join(f"{cycles:.2f}" if np.isfinite(cycles) else "not by then" for cycles in singles)
+    listed = ", ".join(f"{cycles:.2f}" if np.isfinite(cycles) else "not by then" for cycles in singles)
     verdict("cyclic, loose, four plates: cycles until p' < 5 % of p0, block and cell", f"{found[1]:.2f}, {found[2]:.2f}",
             "within one cycle", abs(found[1] - found[2]) <= 1)
     verdict("cyclic, loose, plate and membrane: the same", f"{found[0]:.2f}, {found[2]:.2f}", "within one cycle",
             abs(found[0] - found[2]) <= 1,
             explained=abs(found[1] - found[2]) <= 1 and until / 0.008 < found[2] and min(singles) <= found[2] + 1,
-            cause=f"under a membrane the block does not stay uniform: its points liquefy at {told} cycles and\n"
+            cause=f"under a membrane the block does not stay uniform: its points liquefy at {listed} cycles and\n"
                   f"    unload the others; between four plates that hold its mean strain the same block takes {found[1]:.2f}")
     print(f"    p' of block and cell over all {grid[-1] / 0.008:.1f} cycles: {difference.max():.4f} of p0 apart")
     costs("cyclic_plates_loose")

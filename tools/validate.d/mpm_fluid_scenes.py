@@ -7,16 +7,13 @@ Published: Liang, Zhao, Wu, Zhao and Wang (2023, Comput. Methods Appl. Mech. Eng
 asked for, verdict. consolidation: the specimen's own modulus and the exact answer of the two-phase equations.
 undrained, undrained_64, drained, cyclic: blocks beside the test of their specimen. mandel: the analytic answer.
 column, wave, wave_far, scan: trends that the paper describes, at reduced size; shaking: the same, hours. Runs that are whole in FOLDER are used
-again, and those that were stopped go on."""
+again, and those that were stopped are continued."""
 
-
+import harness
+from mpm import plot_style
 from mpm_fluid_blocks import consolidation, cyclic, drained, mandel, undrained, undrained_64
 from mpm_fluid_soils import column, shaking
 from mpm_fluid_waves import scan, wave, wave_far
-from records import STYLE, plt
-from mpm import cases, folder
-from verdict import tell_verdicts
-
 
 PARTS = {"consolidation": consolidation, "undrained": undrained, "undrained_64": undrained_64, "drained": drained,
          "cyclic": cyclic, "mandel": mandel, "column": column, "wave": wave, "wave_far": wave_far, "scan": scan,
@@ -24,12 +21,10 @@ PARTS = {"consolidation": consolidation, "undrained": undrained, "undrained_64":
 
 
 def main():
-    folder.mkdir(parents=True, exist_ok=True)
-    plt.rcParams.update(STYLE)
-    for part in cases or [part for part in PARTS if part != "shaking"]:
+    plot_style()
+    for part in harness.words or [part for part in PARTS if part != "shaking"]:
         PARTS[part]()
-    tell_verdicts()
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

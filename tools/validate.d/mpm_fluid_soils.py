@@ -6,19 +6,16 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    GRAVITY, MOHR_COULOMB, SOLIDS, WATER, continuum_scene, costs, family, frame_at, frames, run, told, watched)
-from verdict import verdict
-from mpm import folder, picture, results
+    GRAVITY, SOLIDS, WATER, costs, family, frame_at, run, watched, with_options)
+from harness import bars, results, sets, verdict
+from mpm import folder, frames, front, mohr_coulomb, moving_mean, picture, rows_in, with_soil
 
 
 GATE = 0.1  # s, when it is removed
 
 
-def front(frame, apart=1):
-    """Where the deposit ends, m: the first gap of more than so many cells along x."""
-    x = np.sort(frame["position_m"][:, 0])
-    gaps = np.flatnonzero(np.diff(x) > apart * frame["grid_cell_m"][0])
-    return x[gaps[0]] if len(gaps) else x[-1]
+def front_of(frame):
+    return front(frame["position_m"], frame["grid_cell_m"][0])
 
 
 COLUMN_OPTIONS = os.environ.get("RVELAB_MPM_COLUMN", "").split()
@@ -28,7 +25,7 @@ def column():
     for soil in ("dense", "medium", "loose"):
         family(soil)
     print("\nSaturated column, 1 x 1 m, k 1e-2 m/s, from the removal of the gate on: front beyond 1 m (m), mean excess\n"
-          "pore pressure of all points (Pa), kinetic and potential energy over the first potential energy" + told(COLUMN_OPTIONS))
+          "pore pressure of all points (Pa), kinetic and potential energy over the first potential energy" + with_options(COLUMN_OPTIONS))
     found = {}
     for case in ("dry", "medium", "dense", "loose"):
         name = f"column_saturated_{case}"
@@ -39,10 +36,10 @@ def column():
         e = np.mean(first["void_ratio"])
         whole = (SOLIDS / (1 + e) + WATER * n) * GRAVITY * 0.5
         mean = lambda at, field: np.nan if case == "dry" else np.mean(frame_at(name, GATE + at)[f"{field}_Pa"])
-        found[case] = {"e": e, "front 0.5": front(frame_at(name, GATE + 0.5)) - 1,
+        found[case] = {"e": e, "front 0.5": front_of(frame_at(name, GATE + 0.5)) - 1,
                        "excess 0.06": mean(0.06, "excess_pore_pressure"),
                        "water 0.06": mean(0.06, "pore_pressure"),
-                       "front": front(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
+                       "front": front_of(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
                        "peak at": t[np.argmax(h["kinetic_J"])], "potential": (h["potential_J"] / whole, t),
                        "end": t[-1], "excess": [mean(at, "excess_pore_pressure") for at in (0.06, 0.2, 0.5, t[-1])]}
         f = found[case]
@@ -86,11 +83,11 @@ def soil_column(name, *options, cell=0.1, points=4, water="", base=""):
              ("[output]", (f"[fluid]\nconductivity_m_s = 1e-2\nporosity = {POROSITY:g}\n\n" if water else "") + "[output]")]
     if base:
         edits += [("[[boundary]]\nname = \"base\"\nkind = \"fixed\"\naxis = \"y\"\nat_m = 0\n", base)]
-    material = MOHR_COULOMB.format(name="sand", density=SOLIDS * (1 - POROSITY), angle=ANGLE)
-    h, _ = run(name, continuum_scene(name, "column_saturated.toml", edits, material),
-               *(word for each in options for word in ("--set", each)))
+    material = mohr_coulomb(ANGLE, SOLIDS * (1 - POROSITY), 5e6, more="poisson_ratio = 0.3").replace('"soil"', '"sand"')
+    h, _ = run(name, with_soil(name, "column_saturated.toml", material, *edits),
+               *sets(*options))
     excess = np.mean(frame_at(name, GATE + 0.06)["excess_pore_pressure_Pa"]) if water else np.nan
-    return front(frame_at(name, GATE + 0.5)) - 1, excess, h["kinetic_J"].max()
+    return front_of(frame_at(name, GATE + 0.5)) - 1, excess, h["kinetic_J"].max()
 
 
 SMOOTH = """[[body]]
@@ -117,15 +114,16 @@ def column_causes():
     causes = {"fronts": fronts, "limit": fronts[-1] + last**2 / (first - last), "base": base, "still": wet[1],
               "wet": wet[0], "linear": wet_linear[0], "dry": dry_linear[0], "slower": wet_linear[0] / wet[0],
               "weaker": (wet_linear[2] / dry_linear[2]) / (wet[2] / dry[2])}
-    told = lambda *values: ", ".join(f"{value:.3f}" for value in values)
+    listed = lambda *values: ", ".join(f"{value:.3f}" for value in values)
     print(f"Mohr-Coulomb soil of {ANGLE} degrees in the same scene, no dilation: front at 0.5 s with cells of 0.1, 0.05, 0.025 m\n"
-          f"    {told(*fronts)}, Aitken's limit {causes['limit']:.3f}; base friction 0.4 instead of a rough base {base:.3f}. With 25 points a cell,\n"
-          f"    B-splines and linear shape functions: dry {told(dry[0], dry_linear[0])}, saturated {told(wet[0], wet_linear[0])}, peak of E_k of the\n"
-          f"    saturated over the dry one {told(wet[2] / dry[2], wet_linear[2] / dry_linear[2])}; mean excess pressure at 0.06 s {wet[1]:.0f}, "
-          f"{wet_linear[1]:.0f} Pa;\n    B-splines, no pressure given at free surfaces: front {told(closed[0])}\n")
+          f"    {listed(*fronts)}, Aitken's limit {causes['limit']:.3f}; base friction 0.4 instead of a rough base {base:.3f}. With 25 points a cell,\n"
+          f"    B-splines and linear shape functions: dry {listed(dry[0], dry_linear[0])}, saturated {listed(wet[0], wet_linear[0])}, peak of E_k of the\n"
+          f"    saturated over the dry one {listed(wet[2] / dry[2], wet_linear[2] / dry_linear[2])}; mean excess pressure at 0.06 s {wet[1]:.0f}, "
+          f"{wet_linear[1]:.0f} Pa;\n    B-splines, no pressure given at free surfaces: front {listed(closed[0])}\n")
     return causes
 
 
+@bars
 def column_bars(excess, water, dry, fronts, peaks, causes):
     """Wet ones in the order dense, medium, loose: mean pressures (Pa) at 0.06 s; fronts beyond 1 m at 0.5 s; kinetic energies."""
     own = [each - causes["still"] for each in excess]
@@ -169,15 +167,15 @@ PERIOD = 0.4  # s
 
 
 def shaking():
-    print("\nShaken box, 2 x 1 m, k 1e-3 m/s: points A (top), B (middle), C (base) of the middle" + told(SHAKING_OPTIONS))
+    print("\nShaken box, 2 x 1 m, k 1e-3 m/s: points A (top), B (middle), C (base) of the middle" + with_options(SHAKING_OPTIONS))
     found = {}
     for seed in SEEDS:
         for soil in ("dense", "medium"):
             names = family(soil, seed)
             name = f"shaking_{soil}_{seed}"
             listed = "[" + ",".join(f'"{each}"' for each in names) + "]"
-            run(name, "shaking.toml", "--case", soil, "--set", f"material.sand.specimens={listed}", "--set",
-                f"output.frame_every_s={PERIOD / 10:g}", "--set", "output.networks=false", *SHAKING_OPTIONS)
+            run(name, "shaking.toml", "--case", soil, *sets(f"material.sand.specimens={listed}",
+                f"output.frame_every_s={PERIOD / 10:g}", "output.networks=false"), *SHAKING_OPTIONS)
             found[soil, seed] = shaken(name)
             costs(name)
     print()
@@ -202,11 +200,13 @@ def shaking():
         onset_bars([found["medium", seed]["onset"] for seed in SEEDS])
 
 
+@bars
 def onset_bar(seed, onset):
     verdict(f"shaking, seed {seed}: onset at A, B, C, medium (s)", ", ".join(f"{t:.1f}" for t in onset), "A before B and C",
             onset[0] < min(onset[1:]))
 
 
+@bars
 def onset_bars(onsets):
     """In a rigid box tau/sigma'_v0 = a rho/((rho - rho_w) g) at every depth, so that without drainage all of it liquefies in the
     same cycle: that A is the first follows from the surface, the order of B and C from nothing but their specimens. Asked is
@@ -223,10 +223,9 @@ def shaken(name):
     w = watched(name)
     t, end = w["time_s"], w["time_s"][-1]
     late = t > 0.75 * end
-    window = np.ones(max(1, round(PERIOD / np.median(np.diff(t)))))
-    ratios = [np.convolve(w[f"{k}.pore_pressure_ratio"], window / len(window), mode="same") for k in (0, 1, 2)]
+    ratios = [moving_mean(w[f"{k}.pore_pressure_ratio"], rows_in(t, PERIOD)) for k in (0, 1, 2)]
     onset = [next((float(time) for time, ratio in zip(t, r) if ratio > 0.05), np.inf) for r in ratios]
-    # Stress and place of B in each frame; the watched point is the nearest one.
+    # Stress and position of B in each frame; the watched point is the nearest one.
     times, shear, aside, contacts = [], [], [], []
     with h5py.File(frames(name)[0]) as file:
         at = file["position_m"][()]
@@ -243,11 +242,11 @@ def shaken(name):
         within = (times >= k * PERIOD - 1e-9) & (times <= (k + 1) * PERIOD + 1e-9)
         if within.sum() > 3:
             cycles.append(np.polyfit(aside[within], shear[within], 1)[0] if np.ptp(aside[within]) > 0 else np.nan)
-    told = {"ratio": float(np.mean(w["0.pore_pressure_ratio"][late])), "onset": onset,
-            "settled": float((w["0.y_m"][0] - w["0.y_m"][-1]) * 1e3), "stiffness": cycles[-1] / cycles[1],
-            "contacts": (contacts[0], contacts[-1])}
+    found = {"ratio": float(np.mean(w["0.pore_pressure_ratio"][late])), "onset": onset,
+             "settled": float((w["0.y_m"][0] - w["0.y_m"][-1]) * 1e3), "stiffness": cycles[-1] / cycles[1],
+             "contacts": (contacts[0], contacts[-1])}
     parts = [(t >= a * end / 4) & (t <= (a + 1) * end / 4) for a in range(4)]
     quarters = [", ".join(f"{np.mean(r[part]):.3f}" for part in parts) for r in ratios]
     print(f"{name}: {end:.1f} s; ratio by quarters at A {quarters[0]}; B {quarters[1]}; C {quarters[2]};\n"
-          f"    settlement {told['settled']:.2f} mm; stiffness of B by cycles {cycles[1]:.3g}, {cycles[len(cycles) // 2]:.3g}, {cycles[-1]:.3g} Pa/m")
-    return told
+          f"    settlement {found['settled']:.2f} mm; stiffness of B by cycles {cycles[1]:.3g}, {cycles[len(cycles) // 2]:.3g}, {cycles[-1]:.3g} Pa/m")
+    return found

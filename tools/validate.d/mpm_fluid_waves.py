@@ -6,10 +6,10 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    SOLIDS, WATER, cell_test, costs, elastic_scene, frame_at, frames, run, told, watched)
+    SOLIDS, WATER, cell_test, costs, elastic_scene, frame_at, run, watched, with_options)
 from mpm_fluid_blocks import oedometer
-from mpm import folder, picture, results, specimen
-from verdict import verdict
+from harness import bars, results, sets, verdict
+from mpm import folder, frames, picture, specimen
 
 
 # --- waves ------------------------------------------------------------------------------------------------------------
@@ -26,10 +26,9 @@ SNAPSHOTS = 0.04, 0.07, 0.09, 0.12  # s, of the published figures
 def wave_run(case, conductivity=None):
     name = f"wave_{case}" + (f"_{conductivity:g}" if conductivity else "")
     packed, recipe, *keys = PACKINGS[case]
-    specimen(packed, *(word for key in keys for word in ("--set", key)), recipe=recipe)
+    specimen(packed, *keys, recipe=recipe)
     run(name, "wave.toml", "--case", case, *WAVE_OPTIONS,
-        *(("--set", f"fluid.conductivity_m_s={conductivity:g}", "--set", f"time.duration_s={SCAN_ENDS}") if conductivity
-          else ()))
+        *(sets(f"fluid.conductivity_m_s={conductivity:g}", f"time.duration_s={SCAN_ENDS}") if conductivity else ()))
     return name
 
 
@@ -59,7 +58,7 @@ def wave():
     print("\nWaves, 21 x 10 m of elliptic grains, k 1e-2 m/s: shear modulus of the specimen, Rayleigh speed\n"
           "0.955 sqrt(G/rho) of the soil with its water; speeds along the surface, 2 to 5.6 m from the strip's middle,\n"
           "right and left (a wave of 0.08 s is 7 to 11 m long: these points are nearer than one, where crests and troughs\n"
-          "move apart)" + told(WAVE_OPTIONS))
+          "move apart)" + with_options(WAVE_OPTIONS))
     depth, asymmetry, shares, ratios = {}, {}, {}, {}
     for case in PACKINGS:
         name = wave_run(case)
@@ -106,6 +105,7 @@ def wave():
     sides_bars(*(asymmetry[case] for case in PACKINGS))
 
 
+@bars
 def near_bars(ratios, elastic):
     """In the near field, less than a wavelength from the strip, crests and troughs move apart: the speed of Rayleigh waves is
     asked at 14 to 18 m (wave_far), and here that of an elastic soil in the same box, which has it there."""
@@ -115,6 +115,7 @@ def near_bars(ratios, elastic):
                 max(abs(each / elastic - 1) for each in pair) <= 0.05)
 
 
+@bars
 def sides_bars(straight, inclined, isotropic):
     """Right over left in the paper's box, sums over all points."""
     for angle, found in (("0 degrees", straight), ("isotropic", isotropic)):
@@ -122,6 +123,7 @@ def sides_bars(straight, inclined, isotropic):
     print(f"    30 degrees: {inclined:.3f} (judged with the box of 44 x 20 m)")
 
 
+@bars
 def inclined_bar(inclined, far):
     """The paper says which side moves more, not by how much: more than what is allowed to a symmetric packing. far: of the
     amplitudes on the surface of the larger box."""
@@ -131,6 +133,7 @@ def inclined_bar(inclined, far):
                   f"    the waves: where nothing returns, in 44 x 20 m, the amplitudes on the surface are {far:.3f}")
 
 
+@bars
 def far_bars(straight, inclined, isotropic):
     """What the asymmetric packing has beyond what is allowed to a symmetric one, to the right as the paper says."""
     what = "wave, 44 x 20 m: amplitudes of u_x on the surface, right over left,"
@@ -159,11 +162,13 @@ def wave_far():
     watch = [[middle + d, DEEP] for d in FAR] + [[middle - d, DEEP] for d in FAR]
     sideways = {}
     for case, (packed, recipe, *keys) in PACKINGS.items():
-        specimen(packed, *(word for key in keys for word in ("--set", key)), recipe=recipe)
+        specimen(packed, *keys, recipe=recipe)
         name = f"wave_far_{case}"
         lasts = 0.32 if case == "isotropic" else 0.24  # s, until the trough has passed 18 m
-        run(name, "wave.toml", "--case", case, *WAVE_OPTIONS, "--set", f"region={region}", "--set", f"boundary.right.at_m={WIDE:g}",
-            "--set", f"loads.strip={strip}", "--set", f"time.duration_s={lasts}", "--set", f"output.watched_points_m={watch}")
+        run(name, "wave.toml", "--case", case, *WAVE_OPTIONS,
+            *sets(f"region={region}", f"boundary.right.at_m={WIDE:g}", f"loads.strip={strip}",
+                  f"time.duration_s={lasts}",
+                  f"output.watched_points_m={watch}"))
         density, G = density_and_shear(packed, frame_at(name, 0))
         rayleigh, w, n = 0.955 * np.sqrt(G / density), watched(name), len(FAR)
         far = [k for k, d in enumerate(FAR) if d >= 14]

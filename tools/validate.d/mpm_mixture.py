@@ -9,14 +9,15 @@ one point, where no node carries soil of both sides of a rock (there the soil wi
 has softened, and ends: its peak is taken, its residual is that of cells of two points). Runs that are whole in FOLDER are used again."""
 
 import functools
-import pathlib
 import re
 
 import numpy as np
 
-from mpm import between_plates, energy_parts, folder, peak_of, run
+import harness
+import keeping
+from harness import mean_error, sets, verdict
+from mpm import between_plates, energy_parts, folder, peak_of, rough_spheres_bound, run, softening_curve
 from rigid_sphere import young_of_array
-from verdict import tell_verdicts, verdict
 
 EDGE = 0.0375  # m
 SCENE = "mixture_triaxial.toml"
@@ -25,19 +26,11 @@ CUBIC, PEAK_STRAIN, DECAY = (1075.64, -407.93, 16.39, 0.32463), 0.022, 50
 PEAK, RESIDUAL = np.radians(28.6), np.radians(18.6)
 
 
-def slope(angle):
-    """Of the outer cone."""
-    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
-
-
 def exact(plastic):
-    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains, the lateral
-    stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic = dlambda/sqrt(3)."""
-    cubic = np.polyval(CUBIC, plastic)
-    angle = np.where(plastic < PEAK_STRAIN, cubic, RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
-    alpha, beta = slope(angle), slope(PSI)
-    q = 3 * alpha * PRESSURE / (1 / np.sqrt(3) - alpha)
-    return q / E + (1 - np.sqrt(3) * beta) * plastic, q, q * (1 - 2 * NU) / E - 3 * np.sqrt(3) * beta * plastic
+    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains."""
+    angle = np.where(plastic < PEAK_STRAIN, np.polyval(CUBIC, plastic),
+                     RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
+    return softening_curve(plastic, angle, PSI, PRESSURE, E, NU)
 
 
 def test(name, *options, begins=0.02):
@@ -50,30 +43,32 @@ def at(strains, axial, values):
     return " ".join(f"{x:6.1f}" for x in np.interp(strains, axial, values))
 
 
-print("Drucker-Prager soil with the softening of Li et al. (eq. 43) at 50 kPa, 8,000 points, plates at 0.02 m/s\n")
-strains = np.array([1, 2, 3, 4, 5, 6, 8, 10, 15]) / 100
-ep = np.linspace(0, 0.25, 100_001)
-curve = exact(ep)
-along = np.concatenate(([0], curve[0])), np.concatenate(([0], curve[1])), np.concatenate(([0], curve[2]))
-axial, volumetric, q, h, printed = test("soil")
-print("axial strain, %           " + " ".join(f"{100 * s:6.0f}" for s in strains))
-print("q, exact, kPa             " + at(strains, along[0], along[1] / 1e3))
-print("q, plates                 " + at(strains, axial, q / 1e3))
-print("volumetric, exact, %      " + at(strains, along[0], 100 * along[2]))
-print("volumetric, plates        " + at(strains, axial, 100 * volumetric) + "\n")
-peak_at = curve[0][curve[1].argmax()]
-before = axial < peak_at
-error = np.abs(q - np.interp(axial, along[0], along[1]))[before].max() / curve[1].max()
-verdict("largest error up to the peak over the peak", f"{100 * error:.2f} %", "2 %", error < 0.02)
-residual = q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
-verdict("mean from 10 to 16 %, kPa", f"{residual:.1f}", "46.9 +- 2", abs(residual - 46.9) < 2)
-before_load = (h["time_s"] > 0.005) & (h["time_s"] < 0.02)
-rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max() for plate in ("right", "back", "top"))
-verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
+def soil_alone():
+    print("Drucker-Prager soil with the softening of Li et al. (eq. 43) at 50 kPa, 8,000 points, plates at 0.02 m/s\n")
+    strains = np.array([1, 2, 3, 4, 5, 6, 8, 10, 15]) / 100
+    ep = np.linspace(0, 0.25, 100_001)
+    curve = exact(ep)
+    along = np.concatenate(([0], curve[0])), np.concatenate(([0], curve[1])), np.concatenate(([0], curve[2]))
+    axial, volumetric, q, h, printed = test("soil")
+    print("axial strain, %           " + " ".join(f"{100 * s:6.0f}" for s in strains))
+    print("q, exact, kPa             " + at(strains, along[0], along[1] / 1e3))
+    print("q, plates                 " + at(strains, axial, q / 1e3))
+    print("volumetric, exact, %      " + at(strains, along[0], 100 * along[2]))
+    print("volumetric, plates        " + at(strains, axial, 100 * volumetric) + "\n")
+    peak_at = curve[0][curve[1].argmax()]
+    before = axial < peak_at
+    error = np.abs(q - np.interp(axial, along[0], along[1]))[before].max() / curve[1].max()
+    verdict("largest error up to the peak over the peak", f"{100 * error:.2f} %", "2 %", error < 0.02)
+    residual = q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
+    verdict("mean from 10 to 16 %, kPa", f"{residual:.1f}", "46.9 +- 2", abs(residual - 46.9) < 2)
+    before_load = (h["time_s"] > 0.005) & (h["time_s"] < 0.02)
+    rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max()
+               for plate in ("right", "back", "top"))
+    verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
 
 
-SLOW = ("--set", "time.duration_s=0.14", "--set", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]")
-CELLS = {"3.75 mm": (), "1.875 mm": ("--set", "grid.cell_m=1.875e-3", "--set", "region.0.points_per_cell=1")}
+SLOW = sets("time.duration_s=0.14", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]")
+CELLS = {"3.75 mm": (), "1.875 mm": sets("grid.cell_m=1.875e-3", "region.0.points_per_cell=1")}
 FINEST = "1.875 mm"
 SEEDS = {"ghost": (1, 2, 3), "surface": (1,)}
 # At the surface of rocks the soil starts at a quarter of the pressure, and the plates consolidate it, with GIMP
@@ -84,15 +79,14 @@ def at_surface(speed=0.05, edge=EDGE):
     plates = [f'{{name="{name}", kind="half_space", centre_m={[edge if k == axis else 0 for k in range(3)]}, '
               f'normal={[-1 if k == axis else 0 for k in range(3)]}, {rise}{moving if name == "top" else ""}}}'
               for axis, name in enumerate(("right", "back", "top"))]
-    return ("--set", f"body=[{', '.join(plates)}]", "--set", "initial.pressure_Pa=12.5e3", "--set", "time.cfl=0.1", "--set",
-            'grid.shape="gimp"')
+    return sets(f"body=[{', '.join(plates)}]", "initial.pressure_Pa=12.5e3", "time.cfl=0.1", 'grid.shape="gimp"')
 
 
 @functools.cache
 def mixture(cell, share, contact, seed):
-    case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else SLOW
+    case = ["--case", f"rocks_{share}", *sets(f"rocks.coarse.seed={seed}")] if share else SLOW
     if contact == "surface":
-        case += ("--set", 'rock_soil={contact="surface", friction=0.35}', "--set", "time.duration_s=0.12", *at_surface())
+        case = [*case, *sets('rock_soil={contact="surface", friction=0.35}', "time.duration_s=0.12"), *at_surface()]
     where = "" if cell == "3.75 mm" else cell.replace(" ", "") + "_"
     a, v, q, h, printed = test(f"{where}mixture_{share}_{contact}_{seed}", *case, *CELLS[cell])
     peak, at, residual = peak_of(a, q)
@@ -112,7 +106,7 @@ def surface_over_balls(cell, share):
 
 def ends_of_grains():
     """Means from 10 to 16 % of 0, 20 and 40 % in the kept table of mpm_grains, where every grain is a rock."""
-    table = (pathlib.Path(__file__).parent / "results/mpm_grains.txt").read_text().split("Soil fitted to fine grains")[0]
+    table = keeping.text(keeping.read("mpm_grains")).split("Soil fitted to fine grains")[0]
     ends = {}
     for share, last in re.findall(r"^ ?(\d+) % .* ([\d.]+)$", table, re.MULTILINE):
         ends.setdefault(share, []).append(float(last))
@@ -124,7 +118,7 @@ def soil_peak(cell):
     """Of the soil alone in such cells, kPa."""
     if cell == "3.75 mm":
         return mixture(cell, 0, "-", 1)["peak"]
-    a, v, q, h, printed = test("1.875mm_soil", *SLOW, *CELLS[cell], "--set", "time.duration_s=0.06")
+    a, v, q, h, printed = test("1.875mm_soil", *SLOW, *CELLS[cell], *sets("time.duration_s=0.06"))
     return q.max() / 1e3
 
 
@@ -134,7 +128,7 @@ def means(cell):
     found = {}
     for share in (20, 40):
         values = {what: [mixture(cell, share, "ghost", seed)[what] for seed in SEEDS["ghost"]] for what in ("peak", "at", "residual")}
-        found[share] = {what: (np.mean(each), np.std(each, ddof=1) / np.sqrt(len(each))) for what, each in values.items()}
+        found[share] = {what: mean_error(each) for what, each in values.items()}
     return found
 
 
@@ -185,14 +179,15 @@ def stiffness(cell, share, contact):
     """E, Pa, of an elastic mixture, or of the soil alone (share 0) loaded and discretised alike; a row each 0.1 ms: 75 between 0.1
     and 0.3 % of strain. A wave crosses in 0.7 ms: at 0.05 m/s, with 40 rows, the soil alone had 0.82 to 1.06 of its E."""
     where = "" if cell == "3.75 mm" else cell.replace(" ", "") + "_"
-    options = at_surface(0.01) if contact == "surface" else ("--set", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.01]]")
-    rocks = ("--case", f"rocks_{share}", "--set", "rock_soil={" + f'contact="{contact}", rough=true' + "}") if share else ()
+    options = at_surface(0.01) if contact == "surface" else sets("body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.01]]")
+    rocks = ("--case", f"rocks_{share}",
+             *sets("rock_soil={" + f'contact="{contact}", rough=true' + "}")) if share else ()
     a, v, q, h, printed = test(f"{where}slow_elastic_{share}_{contact}", *rocks, *ELASTIC, *CELLS[cell], *options)
     return slope_of(a, q)
 
 
 # Cohesion of 1 MPa: the soil stays elastic.
-ELASTIC = ("--set", "material.soil.cohesion_Pa=1e6", "--set", "time.duration_s=0.034", "--set", "output.history_every_s=1e-4")
+ELASTIC = sets("material.soil.cohesion_Pa=1e6", "time.duration_s=0.034", "output.history_every_s=1e-4")
 
 
 def slope_of(axial, q):
@@ -205,19 +200,20 @@ def one_rock(edge, radius):
     """E over that of the soil alone, of one rough rock in the middle of a cube between plates, at the surface, in the finest cells;
     the exact value, of a simple cubic array; the gap between rock and plate in cells."""
     def of(name, *rock):
-        h, _ = run(f"one_{name}_{1e3 * edge:g}", SCENE, "-j", "1", *ELASTIC, *CELLS[FINEST], *at_surface(0.01 * edge / EDGE, edge), "--set",
-                   f"region.0.upper_m={[edge] * 3}", *rock)
+        h, _ = run(f"one_{name}_{1e3 * edge:g}", SCENE, "-j", "1", *ELASTIC, *CELLS[FINEST],
+                   *at_surface(0.01 * edge / EDGE, edge),
+                   *sets(f"region.0.upper_m={[edge] * 3}", *rock))
         axial, _, q = between_plates(h, [edge] * 3, 0.02)
         return slope_of(axial, q)
 
-    rock = ("--set", "rock_material=[{name='grain', density_kg_m3=2600, young_modulus_Pa=0.8e9, poisson_ratio=0.12, friction=0.35}]", "--set",
-            f"rock=[{{name='one', material='grain', shape='sphere', radius_m={radius}, centre_m={[edge / 2] * 3}}}]", "--set",
+    rock = ("rock_material=[{name='grain', density_kg_m3=2600, young_modulus_Pa=0.8e9, poisson_ratio=0.12, friction=0.35}]",
+            f"rock=[{{name='one', material='grain', shape='sphere', radius_m={radius}, centre_m={[edge / 2] * 3}}}]",
             "rock_soil={contact='surface', rough=true}")
     return of("rock", *rock) / of("soil"), young_of_array(radius / edge, NU), (edge / 2 - radius) / 1.875e-3
 
 
 def narrow_gaps(share, contact):
-    """Gaps between rocks that are narrower than a cell, as the run in the finest cells told."""
+    """Gaps between rocks that are narrower than a cell, as the run in the finest cells reported."""
     printed = (folder / f"{FINEST.replace(' ', '')}_slow_elastic_{share}_{contact}.txt").read_text()
     return int(re.search(r"(\d+) gaps between rocks are narrower", printed)[1])
 
@@ -227,10 +223,7 @@ def elastic_mixtures(cell):
           "0.3 % over that of the soil alone, which has " + " and ".join(f"{stiffness(cell, 0, contact) / E:.3f} ({contact})"
                                                                         for contact in ("ghost", "surface")) + " of its E\n")
     for share, volume in ((20, 0.158), (40, 0.311)):
-        g, k = E / (2 * (1 + NU)), E / (3 * (1 - 2 * NU))
-        bound_k = k + volume / (1 - volume) * (k + 4 / 3 * g)
-        bound_g = g + volume / (1 - volume) * 5 * g * (3 * k + 4 * g) / (6 * (k + 2 * g))
-        bound = 9 * bound_k * bound_g / (3 * bound_k + bound_g) / E
+        bound = rough_spheres_bound(E, NU, volume)
         for contact in ("ghost", "surface"):
             stiff, finest = (stiffness(c, share, contact) / stiffness(c, 0, contact) for c in (cell, FINEST))
             if cell != FINEST:  # halving the cells brings it into the range, or down from above it
@@ -246,7 +239,12 @@ def elastic_mixtures(cell):
                     bound <= stiff <= 1.3 * bound, explained, cause)
 
 
-for cell in CELLS:
-    mixtures(cell)
-    elastic_mixtures(cell)
-tell_verdicts()
+def main():
+    soil_alone()
+    for cell in CELLS:
+        mixtures(cell)
+        elastic_mixtures(cell)
+
+
+if __name__ == "__main__":
+    harness.main(main)

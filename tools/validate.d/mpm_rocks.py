@@ -8,20 +8,19 @@ and what rocks cost. Runs that are whole in FOLDER are used again."""
 
 import filecmp
 import re
-import shutil
-import subprocess
 
 import h5py
 import numpy as np
 
-from mpm import ROOT, folder, mpm, picture, results, run
-from verdict import tell_verdicts, verdict
+import harness
+from harness import PROTOCOLS, mpm, once, results, sets, verdict
+from mpm import folder, frames, last_frame, picture, run
 
 
 def momentum(name):
     """Of points and rocks along x, N s, at each frame."""
     sums = []
-    for points, rocks in zip(sorted((folder / name).glob("points_*.h5")), sorted((folder / name).glob("rocks_*.h5"))):
+    for points, rocks in zip(frames(name), sorted((folder / name).glob("rocks_*.h5"))):
         with h5py.File(rocks) as file:
             total = (file["mass_kg"][()] * file["velocity_m_s"][()][:, 0]).sum()
         with h5py.File(points) as file:
@@ -35,7 +34,7 @@ def momentum(name):
 def balls():
     print("Two balls of 0.3351 kg at 5 m/s (Li et al. 2023, 4.1)\n")
     for steps in (500, 1000):
-        h, _ = run(f"balls_{steps}", "ball_impact.toml", "--set", f"time.rock_steps_per_collision={steps}")
+        h, _ = run(f"balls_{steps}", "ball_impact.toml", *sets(f"time.rock_steps_per_collision={steps}"))
         residual = np.abs(h["rocks.residual_J"]).max()
         if steps == 500:
             coarse = residual
@@ -47,8 +46,8 @@ def balls():
     for contact, cfl, cell in (("ghost", 0.1, 4), ("ghost", 0.05, 4), ("surface", 0.4, 4), ("surface", 0.4, 2), ("surface", 0.1, 4),
                                ("surface", 0.1, 2)):
         name = f"ball_points_{contact}_{cfl}" + ("_fine" if cell == 2 else "")
-        h, _ = run(name, "ball_impact.toml", "--case", "points", "--set", f'rock_soil.contact="{contact}"', "--set",
-                   f"time.cfl={cfl}", "--set", f"grid.cell_m={cell}e-3")
+        h, _ = run(name, "ball_impact.toml", "--case", "points",
+                   *sets(f'rock_soil.contact="{contact}"', f"time.cfl={cfl}", f"grid.cell_m={cell}e-3"))
         rock, soil = -h["flying.velocity_x_m_s"][-1], -h["momentum_x_N_s"][-1] / 0.3351
         head = f"points, {contact}, cells of {cell} mm, cfl {cfl}: "
         if cell == 4:
@@ -71,8 +70,8 @@ def balls():
 def slid(contact, friction, *options, name=""):
     """Speed and way along a slope less the exact ones, m/s and m, and these. While it slides, the ground takes as much of the
     speed down the slope as friction has of what it gives across it: hops and settling are taken out so."""
-    h, _ = run(f"block_{contact}_{friction}{name}", "block_slide.toml", "--set", f'rock_soil.contact="{contact}"', "--set",
-               f"rock_soil.friction={friction}", *options)
+    h, _ = run(f"block_{contact}_{friction}{name}", "block_slide.toml",
+               *sets(f'rock_soil.contact="{contact}"', f"rock_soil.friction={friction}", *options))
     t = h["time_s"]
     speed, way = 10 * (1 - friction) * t, 5 * (1 - friction) * t**2
     return (h["block.velocity_x_m_s"] + friction * h["block.velocity_z_m_s"] - speed,
@@ -81,7 +80,7 @@ def slid(contact, friction, *options, name=""):
 
 def block():
     print("\nBlock on a slope of 45 degrees for 0.5 s (Li et al. 2023, 4.2)\n")
-    stiffer = slid("surface", 0.5, "--set", "material.0.young_modulus_Pa=1.28e9", "--set", "time.duration_s=0.04", name="_stiff")[0]
+    stiffer = slid("surface", 0.5, "material.0.young_modulus_Pa=1.28e9", "time.duration_s=0.04", name="_stiff")[0]
     for contact in ("surface", "ghost"):
         for friction in (0.1, 0.2, 0.3, 0.4, 0.5):
             faster, farther, speed, way = slid(contact, friction)
@@ -159,8 +158,7 @@ def floating():
         scene.write_text(FLOAT.format(contact=contact))
         h, _ = run(f"float_{contact}", scene)
         late = h["time_s"] > 2
-        with h5py.File(sorted((folder / f"float_{contact}").glob("points_*.h5"))[-1]) as file:
-            x, volume = file["position_m"][()], file["volume_m3"][()]
+        x, volume = last_frame(f"float_{contact}", "position_m", "volume_m3")
         # The level, away from the disc: columns of points on the outer sides.
         aside = (x[:, 0] < 0.6) | (x[:, 0] > 2.4)
         level = volume[aside].sum() / 1.2
@@ -196,17 +194,19 @@ def boulders():
     count, differ = same_files("boulders", "boulders_2")
     verdict(f"one and two threads: files that differ, of {count}", str(len(differ)), "0", not differ)
     name = "boulders_stopped"
-    if not (folder / name / "checkpoint.h5").exists():
-        subprocess.run([mpm, ROOT / "protocols/mpm/boulders.toml", "-o", folder / name, "-q", "--stop-at", "1.2"],
-                       check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([mpm, "--resume", folder / name, "-q"], check=True, stdout=subprocess.DEVNULL)
-    # The checkpoint tells when the next one is due: a stop is one more.
+
+    def stopped(out):
+        harness.run(mpm, PROTOCOLS / "mpm/boulders.toml", "-o", out, "-q", "--stop-at", "1.2")
+        harness.run(mpm, "--resume", out, "-q")
+
+    once(folder / name, "boulders, stopped at 1.2 s", make=stopped)
+    # The checkpoint says when the next one is due: a stop is one more.
     count, differ = same_files("boulders", name)
     verdict(f"stopped at 1.2 s and resumed: files that differ, of {count}", str(len(differ)), "0", not differ)
-    brought = h["rocks.kinetic_J"].max()
+    largest = h["rocks.kinetic_J"].max()
     residual = np.abs(h["rocks.residual_J"]).max()
     print(f"    largest force on the barrier {np.abs(h['barrier.force_x_N']).max():.0f} N, at rest "
-          f"{np.abs(h['barrier.force_x_N'][-50:]).mean():.0f} N; rocks' largest kinetic energy {brought:.0f} J, residual "
+          f"{np.abs(h['barrier.force_x_N'][-50:]).mean():.0f} N; rocks' largest kinetic energy {largest:.0f} J, residual "
           f"{residual:.2g} J; soil's residual {np.abs(h['residual_J']).max():.0f} J of {h['kinetic_J'].max():.0f} J")
     picture(folder / "boulders", "--field", "velocity", "--frame", "22", "-o", results / "mpm_boulders.png")
     points, rocks, soil, rate = shares(printed)
@@ -275,21 +275,21 @@ def cost():
             name = f"field_{contact}_{count}"
             scene = folder.resolve() / f"{name}.toml"
             scene.write_text(FIELD.format(contact=contact, sides=sides, share=count * np.pi / 6 * 0.027 / box))
-            for each in (name, name + "_two"):  # times of one program
-                shutil.rmtree(folder / each, ignore_errors=True)
+            for each in (name, name + "_two"):  # times of one program: made again
+                (folder / f"{each}.whole").unlink(missing_ok=True)
             h, printed = run(name, scene, "-j", "1")
             points, rocks, soil, rate = shares(printed)
             two = shares(run(name + "_two", scene, "-j", "2")[1])[-1]
-            with h5py.File(folder / name / "points_0000.h5") as file:
-                n = len(file["position_m"])
+            n = len(last_frame(name, "position_m")[0])
             print(f"{contact:<9} {count:<6} {n:<8} {int(h['steps'][-1]):<7} {1 / rate:<13.2f} {1 / two:<9.2f} "
                   f"{100 * soil / points:<15.1f} {100 * rocks / points:<13.2f} {int(h['rocks.soil_contacts'][-1])}",
                   flush=True)
 
 
-balls()
-block()
-floating()
-boulders()
-cost()
-tell_verdicts()
+def main():
+    for part in (balls, block, floating, boulders, cost):
+        part()
+
+
+if __name__ == "__main__":
+    harness.main(main)

@@ -7,13 +7,11 @@ points along each side and of one, and periodic cells of the mixture (4,000 disc
 with the preparation friction of the RVE. Three specimens and drawings of each. Runs that are whole in FOLDER are used
 again."""
 
-import subprocess
-
-import h5py
 import numpy as np
 
-from mpm import ROOT, folder, picture, results, run, rvelab, specimen
-from verdict import tell_verdicts, verdict
+import harness
+from harness import mean_error, once, records, results, rvelab, sets, verdict
+from mpm import folder, picture, run, specimen
 
 EDGE, BEGINS, SEEDS = 0.7, 0.05, (1, 2, 3)
 STRAINS = np.array([0.2, 0.5, 1, 1.5, 2, 2.5, 3]) / 100
@@ -52,44 +50,34 @@ friction_angle_deg = 23
 """
 
 
-def preparation_friction(file):
-    answer = subprocess.run([rvelab, "inspect", file], capture_output=True, text=True, check=True).stdout
-    return float(answer.split("preparation_friction")[1].split()[0])
-
-
 def mixture(seed, friction):
-    name, recipe = folder / f"mixture_{seed}.h5", folder / "mixture.toml"
-    if not name.exists():
-        recipe.write_text(MIXTURE.format(seed=seed, friction=friction))
-        subprocess.run([rvelab, "pack", recipe, "-o", name], check=True, stdout=subprocess.DEVNULL)
-    return name
+    recipe = folder / f"mixture_{seed}.toml"
+    recipe.write_text(MIXTURE.format(seed=seed, friction=friction))
+    return once(folder / f"mixture_{seed}.h5", "pack", recipe)
 
 
 def cell(file):
     """Axial strain, sin of the mobilised angle, volumetric strain of the periodic cell."""
-    out = file.with_name(file.stem + "_biaxial.h5")
-    if not out.exists():
-        subprocess.run([rvelab, "run", ROOT / "protocols/biaxial.toml", "--specimen", file, "-o", out, "--set", "test.pressure_Pa=100e3",
-                        "--set", "stage.compression.to_strain=0.035", "--set", "solver.max_overlap_ratio=0.5"], check=True,
-                       stdout=subprocess.DEVNULL)
-    with h5py.File(out) as records:
-        last = records["records/stage"][()] == records["records/stage"][()].max()
-        stress, F = -records["records/stress_Pa"][()][last], records["records/deformation_gradient"][()][last]
-    major, minor = stress[:, 1, 1], stress[:, 0, 0]
-    return -np.log(F[:, 1, 1] / F[0, 1, 1]), (major - minor) / (major + minor), -np.log(np.linalg.det(F) / np.linalg.det(F[0]))
+    out = once(file.with_name(file.stem + "_biaxial.h5"), "run", "biaxial", "--specimen", file,
+               *sets("test.pressure_Pa=100e3", "stage.compression.to_strain=0.035", "solver.max_overlap_ratio=0.5"))
+    h = records(out, "stress_Pa", "deformation_gradient", last=True)
+    stress, F = -h["stress_Pa"], h["deformation_gradient"]
+    return (-np.log(F[:, 1, 1] / F[0, 1, 1]), harness.sine_of(stress[:, 1, 1], stress[:, 0, 0]),
+            -np.log(np.linalg.det(F) / np.linalg.det(F[0])))
 
 
 def scene(seed, rocks, one_point):
-    """one_point: the grid's cells are as large as the points, else twice."""
+    """The same of material points; residual energy over the work of the stress. one_point: the grid's cells are as
+    large as the points, else twice."""
     name = f"{'with' if rocks else 'without'}_rocks_{seed}" + ("_one" if one_point else "")
-    h, printed = run(name, "rocks_in_grains.toml", "-j", "1", "--set", f'material.fine.specimens=["fine_{seed}.h5"]',
-                     *(("--set", f"rocks.coarse.seed={seed}") if rocks else ("--case", "none")),
+    h, printed = run(name, "rocks_in_grains.toml", "-j", "1", *sets(f'material.fine.specimens=["fine_{seed}.h5"]'),
+                     *(sets(f"rocks.coarse.seed={seed}") if rocks else ("--case", "none")),
                      *(() if one_point else ("--case", "two_points")))
     rows = slice(np.searchsorted(h["time_s"], BEGINS), None)
     x, y = EDGE + h["right.displacement_x_m"][rows], EDGE + h["top.displacement_y_m"][rows]
     major, minor = h["top.pressure_Pa"][rows], h["right.pressure_Pa"][rows]
-    shares[what].append(np.abs(h["residual_J"]).max() / np.abs(h["stress_work_J"]).max())
-    return -np.log(y / y[0]), (major - minor) / (major + minor), -np.log(x * y / (x * y)[0])
+    return (-np.log(y / y[0]), harness.sine_of(major, minor), -np.log(x * y / (x * y)[0]),
+            np.abs(h["residual_J"]).max() / np.abs(h["stress_work_J"]).max())
 
 
 def peak_of(strain, ratio):
@@ -99,40 +87,46 @@ def peak_of(strain, ratio):
     return smooth.max(), even[smooth.argmax()] + 1e-3
 
 
-found, shares = {}, {}
-print("sin of the mobilised angle of friction at axial strains of\n" + " " * 30 + " ".join(f"{100 * s:6.1f}%" for s in STRAINS) +
-      "   peak   at strain, %   volumetric at 3 %, %")
-for what in ("fine, cell", "fine, scene", "fine, scene, one point", "mixture, cell", "mixture, scene", "mixture, scene, one point"):
-    shares[what] = []
-    for seed in SEEDS:
-        specimen(f"fine_{seed}", "--set", "contact.rolling=false", "--set", f"pack.seed={seed}")
-        fine = folder / f"fine_{seed}.h5"
-        if what.endswith("cell"):
-            curve = cell(fine if what.startswith("fine") else mixture(seed, preparation_friction(fine)))
-        else:
-            curve = scene(seed, what.startswith("mixture"), what.endswith("one point"))
-        peak, where = peak_of(*curve[:2])
-        found.setdefault(what, []).append(peak)
-        print(f"{what:<26} {seed:<3}" + " ".join(f"{v:7.3f}" for v in np.interp(STRAINS, *curve[:2])) +
-              f"   {peak:.3f}  {100 * where:<12.2f}   {100 * np.interp(0.03, curve[0], curve[2]):.2f}", flush=True)
-print()
-mean = {what: np.mean(peaks) for what, peaks in found.items()}
-error = {what: np.std(peaks, ddof=1) / np.sqrt(len(peaks)) for what, peaks in found.items()}
-for what in found:
-    told = f"; residual energy over the work of the stress, largest {max(shares[what]):.2f}" if shares[what] else ""
-    print(f"{what:<26} peak {mean[what]:.3f} +- {error[what]:.3f}{told}")
-for what in mean:
-    cells = what.split(",")[0] + ", cell"
-    if what == cells:
-        continue
-    ratio = mean[what] / mean[cells]
-    spread = ratio * np.hypot(error[what] / mean[what], error[cells] / mean[cells])
-    one = what if what.endswith("one point") else what + ", one point"
-    single = mean[one] / mean[cells]
-    verdict(f"{what}: peak over that of the periodic cell, means of {len(SEEDS)}", f"{ratio:.3f} +- {spread:.3f}", "1 +- 0.1",
-            abs(ratio - 1) < 0.1, what == "mixture, scene" and ratio > 1 and abs(single - 1) <= 0.5 * (ratio - 1),
-            f"nodes of cells of two points a side carry soil of both sides of a rock: the same specimens in cells of one point, "
-            f"half as wide, stand at {single:.3f}")
-picture(folder / "with_rocks_1_one", "--field", "eps_q", "-o", results / "mpm_rocks_in_grains.png")
+def main():
+    found, shares = {}, {}
+    print("sin of the mobilised angle of friction at axial strains of\n" + " " * 30 + " ".join(f"{100 * s:6.1f}%"
+                                                                                               for s in STRAINS) +
+          "   peak   at strain, %   volumetric at 3 %, %")
+    for what in ("fine, cell", "fine, scene", "fine, scene, one point", "mixture, cell", "mixture, scene",
+                 "mixture, scene, one point"):
+        shares[what] = []
+        for seed in SEEDS:
+            fine = specimen(f"fine_{seed}", "contact.rolling=false", f"pack.seed={seed}")
+            if what.endswith("cell"):
+                friction = float(rvelab("inspect", fine).split("preparation_friction")[1].split()[0])
+                curve = cell(fine if what.startswith("fine") else mixture(seed, friction))
+            else:
+                curve = scene(seed, what.startswith("mixture"), what.endswith("one point"))
+                shares[what].append(curve[3])
+            peak, where = peak_of(*curve[:2])
+            found.setdefault(what, []).append(peak)
+            print(f"{what:<26} {seed:<3}" + " ".join(f"{v:7.3f}" for v in np.interp(STRAINS, *curve[:2])) +
+                  f"   {peak:.3f}  {100 * where:<12.2f}   {100 * np.interp(0.03, curve[0], curve[2]):.2f}", flush=True)
+    print()
+    mean, error = ({what: mean_error(peaks)[k] for what, peaks in found.items()} for k in (0, 1))
+    for what in found:
+        left = f"; residual energy over the work of the stress, largest {max(shares[what]):.2f}" if shares[what] else ""
+        print(f"{what:<26} peak {mean[what]:.3f} +- {error[what]:.3f}{left}")
+    for what in mean:
+        cells = what.split(",")[0] + ", cell"
+        if what == cells:
+            continue
+        ratio = mean[what] / mean[cells]
+        spread = ratio * np.hypot(error[what] / mean[what], error[cells] / mean[cells])
+        one = what if what.endswith("one point") else what + ", one point"
+        single = mean[one] / mean[cells]
+        verdict(f"{what}: peak over that of the periodic cell, means of {len(SEEDS)}", f"{ratio:.3f} +- {spread:.3f}",
+                "1 +- 0.1",
+                abs(ratio - 1) < 0.1, what == "mixture, scene" and ratio > 1 and abs(single - 1) <= 0.5 * (ratio - 1),
+                f"nodes of cells of two points a side carry soil of both sides of a rock: the same specimens in cells of one point, "
+                f"half as wide, stand at {single:.3f}")
+    picture(folder / "with_rocks_1_one", "--field", "eps_q", "-o", results / "mpm_rocks_in_grains.png")
 
-tell_verdicts()
+
+if __name__ == "__main__":
+    harness.main(main)

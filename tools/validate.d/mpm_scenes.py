@@ -6,21 +6,18 @@ column: run-out, energies and profile of the collapse of columns of a Mohr-Coulo
 against settlement on three soils, beside the N_q of `rvelab calibrate`. pipe: forces on a pipe that is pushed down and
 aside, and what the soil before, below and behind it does; pipe_soil: the same in Mohr-Coulomb soil over meshes and
 strengths. footing_published_5: dense soil of seed 5, whose strength is the paper's, at the published size. Runs that are whole in FOLDER are used again, and those that
-were stopped go on."""
-
-import json
-import os
-import subprocess
-import sys
+were stopped are continued."""
 
 import h5py
 import numpy as np
 
-sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../plot"))
-from records import STYLE, plt  # noqa: E402
-from mpm import ROOT, cases, folder, grain_steps, picture, results, run, rvelab, specimen
-from verdict import verdict
+import harness
+from harness import answer, bars, columns, results, sets, verdict
+from mpm import (
+    costs, folder, frames, front, grain_steps, last_frame, mohr_coulomb, moving_mean, picture, plot_style, rows_in,
+    run, specimen, with_soil)
 
+plt = plot_style()
 
 SURCHARGE, WIDTH = 20e3, 2.0  # Pa, m
 SOILS = {"dense": ("C0", "14.4, 14.8"), "medium": ("C1", "4.8, 3.7"), "soft": ("C2", "3.7, 3.1")}
@@ -31,25 +28,24 @@ SEEDS = (1, 2, 3, 4, 5)  # of the packings; the first is that of the recipes
 
 def packing(soil, seed):
     name = soil if seed == 1 else f"{soil}_{seed}"
-    specimen(name, "--set", f"pack.seed={seed}", recipe=f"pack_{soil}")
+    specimen(name, f"pack.seed={seed}", recipe=f"pack_{soil}")
     return name
 
 
 def footing_run(name, soil, seed, *options):
     """Settlement over width, load over surcharge (a mean of five), and grain-steps of a footing's run."""
-    h, printed = run(name, "footing.toml", "--case", soil, "--set",
-                     f'material.soil.specimens=["{packing(soil, seed)}.h5"]', *options)
+    h, printed = run(name, "footing.toml", "--case", soil,
+                     *sets(f'material.soil.specimens=["{packing(soil, seed)}.h5"]'), *options)
     depth, load = -h["footing.displacement_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
-    return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), grain_steps(printed)
+    return depth[2:-2], moving_mean(load, 5, "valid"), grain_steps(printed)
 
 
 def bearing_factors(soil, seed):
     """N_q of rvelab calibrate, of general and of local shear, and the friction angle (degrees)."""
-    told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5",
-                           "--pressures", "10e3,20e3,30e3", "--threads", "1", "--json"], check=True,
-                          capture_output=True, text=True)
-    told = json.loads(told.stdout)
-    return told["bearing_capacity_Nq"], told["local_shear_Nq"], told["friction_angle_deg"]
+    found = answer("calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5", "--pressures",
+                   "10e3,20e3,30e3",
+                   "--threads", "1")
+    return found["bearing_capacity_Nq"], found["local_shear_Nq"], found["friction_angle_deg"]
 
 
 def footing_figure(curves, factors, name):
@@ -61,8 +57,7 @@ def footing_figure(curves, factors, name):
             axes.plot(depth, load, color=colour, label=None if k else soil, linewidth=0.6 if k else 1.5)
         for factor, style in zip(factors[soil], ("--", ":")):
             axes.axhline(factor, color=colour, linestyle=style, linewidth=1)
-    axes.set_xlabel("settlement over width")
-    axes.set_ylabel("load over surcharge")
+    axes.set(xlabel="settlement over width", ylabel="load over surcharge")
     axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
     axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
     figure.tight_layout()
@@ -96,7 +91,7 @@ def footing():
 def first_level(depth, load):
     """Where a mean over 0.05 widths first stops rising (Vesic): settlement over width, load; None: it never does."""
     at = np.linspace(depth[0], depth[-1], round((depth[-1] - depth[0]) / 0.0025) + 1)
-    smooth = np.convolve(np.interp(at, depth, load), np.ones(21) / 21, mode="valid")
+    smooth = moving_mean(np.interp(at, depth, load), 21, "valid")
     level = np.flatnonzero(np.diff(smooth) <= 0)
     return (at[10 + level[0]], smooth[level[0]]) if len(level) else None
 
@@ -104,16 +99,16 @@ def first_level(depth, load):
 def footing_published():
     """The size and speed of the paper: soft soil, which takes the fewest grain-steps, until beside the footing's edge a
     grain of one RVE is pinched beyond half its radius, and dense soil beyond its peak."""
-    depth, load, steps = soft = footing_run("footing_soft_published", "soft", 1, "--published", "--set",
-                                            "time.duration_s=9.5")
+    depth, load, steps = soft = footing_run("footing_soft_published", "soft", 1, "--published",
+                                            *sets("time.duration_s=9.5"))
     print(f"Soft soil at the published size (12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s), to d/B {depth[-1]:.2f}\n")
     print_loads(depth, load, (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4))
     level = first_level(depth, load)
     if level:
         print(f"it first stops rising (mean over 0.05) at d/B {level[0]:.2f}, {level[1]:.2f} (published: ultimate load 3.7)")
     print_costs("footing_soft_published", steps)
-    depth, load, steps = dense = footing_run("footing_dense_published", "dense", 1, "--published", "--set",
-                                             "time.duration_s=2.5")
+    depth, load, steps = dense = footing_run("footing_dense_published", "dense", 1, "--published",
+                                             *sets("time.duration_s=2.5"))
     print(f"\nDense soil at the published size, to d/B {depth[-1]:.2f}\n")
     print_loads(depth, load, (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875))
     print(f"largest {load.max():.2f} at d/B {depth[load.argmax()]:.3f} (published 14.4)")
@@ -125,8 +120,8 @@ def footing_published():
 
 
 def footing_published_5():
-    depth, load, steps = footing_run("footing_dense_5_published", "dense", 5, "--published", "--set",
-                                     "time.duration_s=2.5")
+    depth, load, steps = footing_run("footing_dense_5_published", "dense", 5, "--published",
+                                     *sets("time.duration_s=2.5"))
     factor, _, angle = bearing_factors("dense", 5)
     print(f"Dense soil of seed 5 (N_q {factor:.1f}, {angle:.2f} degrees) at the published size, to d/B {depth[-1]:.3f}\n")
     print_loads(depth, load, [d for d in (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875) if d < depth[-1]])
@@ -140,21 +135,18 @@ def print_loads(depth, load, depths):
 
 
 def print_costs(name, steps):
-    printed = (folder / f"{name}.txt").read_text().strip().splitlines()
-    print(f"grain-steps {steps:.3g}\n    " + "\n    ".join(printed[-3:]), flush=True)
+    print(f"grain-steps {steps:.3g}")
+    costs((folder / f"{name}.txt").read_text())
 
 
 def front_of(frame, apart=1):
-    """Where the deposit ends, m: the first gap of more than so many cells along x."""
     with h5py.File(frame) as file:
-        x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
-    gaps = np.flatnonzero(np.diff(x) > apart * cell)
-    return x[gaps[0]] if len(gaps) else x[-1]
+        return front(file["position_m"][()], float(file["grid_cell_m"][0]), apart)
 
 
 def collapse(name, h, density):
     """Prints figures of the collapse of a column of 1 x 1 m beside the published ones; draws FOLDER/name."""
-    last = sorted((folder / name).glob("points_*.h5"))[-1]
+    last = frames(name)[-1]
     whole = density * 9.81 * 0.5
     peak = int(np.argmax(h["kinetic_J"]))
     lost = -h["potential_J"][-1] - h["kinetic_J"][-1]
@@ -182,67 +174,68 @@ def column_published():
 
 
 def column_of_grains(name, *options):
-    if not (folder / "column_2685Pa.h5").exists():
-        specimen("column", recipe="pack_column")
+    specimen("column", recipe="pack_column")
     h, printed = run(name, "column.toml", *options)
-    frames = sorted((folder / name).glob("points_*.h5"))
-    with h5py.File(frames[0]) as file:
+    every = frames(name)
+    with h5py.File(every[0]) as file:
         density = 2650 * np.mean(1 / (1 + file["void_ratio"][()]))
         cell = float(file["grid_cell_m"][0])
     print(f"column of grains, {1 / cell:.0f} x {1 / cell:.0f} cells with four points each of 1000 discs (published)")
     collapse(name, h, density)
-    fronts = [front_of(frame) for frame in frames]
-    times = np.linspace(0, h["time_s"][-1], len(frames))
+    fronts = [front_of(frame) for frame in every]
+    times = np.linspace(0, h["time_s"][-1], len(every))
     still = next(k for k in range(len(fronts)) if max(fronts[k:]) - min(fronts[k:]) < cell / 2)
     print(f"the front stays from            {times[still]:<8.2f} 0.7 to 1.3 s")
-    with h5py.File(frames[-1]) as file:
-        x, y, strain = (file["position_m"][()][:, 0], file["position_m"][()][:, 1], file["eps_q"][()])
-    places = np.arange(0, 3.01, 0.5)
-    tops = [max(y[abs(x - max(at, cell / 2)) < cell / 2], default=0.0) for at in places]
-    print("profile: x (m)      " + "".join(f"{at:<6.1f}" for at in places)
+    position, strain = last_frame(name, "position_m", "eps_q")
+    x, y = position[:, 0], position[:, 1]
+    stations = np.arange(0, 3.01, 0.5)
+    tops = [max(y[abs(x - max(at, cell / 2)) < cell / 2], default=0.0) for at in stations]
+    print("profile: x (m)      " + "".join(f"{at:<6.1f}" for at in stations)
           + "\n  highest point (m) " + "".join(f"{top:<6.2f}" for top in tops))
     # The wedge that was never mobilised: points sheared by less than a tenth; its side from the base to the axis.
     dead = strain < 0.1
     print(f"points never sheared by 0.1     {np.mean(dead):<8.2f}")
     if dead.any():
         print(f"their wedge                     {np.degrees(np.arctan2(y[dead].max(), x[dead].max())):<8.0f} 39 degrees")
-    print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
+    costs(printed)
+
+
+def forces_on_pipe(name, h):
+    """Of a run: rows on the way down and, once it has begun, aside; upward and sideward force (kN/m), means over 0.05
+    s; the watched points and their row of the turn."""
+    time, left = h["time_s"], -h["pipe.displacement_x_m"]
+    up, aside = (moving_mean(h[f"pipe.force_{axis}_N"] / 1e3, rows_in(time, 0.05)) for axis in "yx")
+    turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
+    watched = columns(folder / name / "watched.csv")
+    return time <= turn, (time > turn + 0.6) & (left < left.max()), up, aside, watched, np.searchsorted(watched["time_s"], turn)
 
 
 def pipe():
     specimen()
     h, printed = run("pipe", "pipe.toml")
-    time, up, aside = h["time_s"], h["pipe.force_y_N"] / 1e3, h["pipe.force_x_N"] / 1e3
-    depth, left = -h["pipe.displacement_y_m"], -h["pipe.displacement_x_m"]
-    window = max(1, round(0.05 / np.median(np.diff(time))))
-    mean = lambda values: np.convolve(values, np.ones(window) / window, mode="same")
-    up, aside = mean(up), mean(aside)
-    turn = float(time[np.argmax(depth > depth.max() - 1e-9)])
-    down, lateral = time <= turn, (time > turn + 0.6) & (left < left.max())
+    time, depth, left = h["time_s"], -h["pipe.displacement_y_m"], -h["pipe.displacement_x_m"]
+    down, lateral, up, aside, watched, at = forces_on_pipe("pipe", h)
     print("Rough pipe, 1 m in diameter, pushed 0.8 m into dense sand of 9 x 2.5 m (54 x 15 cells, one point each) and 0.7 m\n"
           "to the left; forces on it per metre (means over 0.05 s); published: 196 x 50 cells, speeds not printed\n\n"
           "depth (m)        " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nvertical (kN)    " + "".join(f"{np.interp(d, depth[down], up[down]):<8.0f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nway aside (m)    " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.71, 0.1)))
-    moved = time > turn
     for name, force in (("vertical (kN)", up), ("horizontal (kN)", aside)):
-        print(f"{name:<17}" + "".join(f"{np.interp(d, left[moved], force[moved]):<8.0f}" for d in np.arange(0.1, 0.71, 0.1)))
+        print(f"{name:<17}" + "".join(f"{np.interp(d, left[~down], force[~down]):<8.0f}"
+                                      for d in np.arange(0.1, 0.71, 0.1)))
     print()
     pipe_bars(up[down].max(), up[lateral].mean(), aside[lateral].mean())
-    watched = np.genfromtxt(folder / "pipe/watched.csv", delimiter=",", names=True)
-    at = np.searchsorted(watched["time_s"], turn)
     print("\npoint  eps_q, rotation (degrees) at the turn    at the end         published")
-    for k, (name, told) in enumerate((("D", "0.5, 10 to 15; 2.6, 58"), ("E", "-"), ("F", "1.2, 30; 1.4, 30"))):
-        q, turned = watched[f"{k}eps_q"], watched[f"{k}rotation_deg"]
-        print(f"{name:<6} {q[at]:<8.2f} {abs(turned[at]):<30.0f} {q[-1]:<8.2f} {abs(turned[-1]):<9.0f} {told}")
-    print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
+    for k, (name, published) in enumerate((("D", "0.5, 10 to 15; 2.6, 58"), ("E", "-"), ("F", "1.2, 30; 1.4, 30"))):
+        q, turned = watched[f"{k}.eps_q"], watched[f"{k}.rotation_deg"]
+        print(f"{name:<6} {q[at]:<8.2f} {abs(turned[at]):<30.0f} {q[-1]:<8.2f} {abs(turned[-1]):<9.0f} {published}")
+    costs(printed)
     picture(folder / "pipe", "--field", "eps_q", "-o", results / "mpm_pipe.png")
     figure, axes = plt.subplots(figsize=(5.5, 3.5))
     axes.plot(time, up, label="vertical")
     axes.plot(time, aside, label="horizontal")
-    axes.axvline(turn, color="0.5", linestyle=":", linewidth=1)
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("force of the soil on the pipe (kN/m)")
+    axes.axvline(time[down][-1], color="0.5", linestyle=":", linewidth=1)
+    axes.set(xlabel="time (s)", ylabel="force of the soil on the pipe (kN/m)")
     axes.legend()
     figure.tight_layout()
     figure.savefig(results / "mpm_pipe_forces.png")
@@ -253,6 +246,7 @@ OURS, PAPERS = (32.2, 6), (28.26, 20)  # strength of the specimens, degrees, and
 SHEARED = 20.6  # degrees: of the dense recipe at large strain (tools/validate ensembles)
 
 
+@bars
 def pipe_bars(*found):
     """Largest force down, mean forces on the way aside (kN/m), beside the published ones, asked within 20 %: read off a figure, of
     another specimen. On the way aside soil is sheared by more than 1: its strength lies between the peak's and that of large
@@ -275,28 +269,11 @@ def pipe_bars(*found):
 def pipe_in_soil(angle, across, *options):
     """The scene's mechanics without its specimen: forces on the pipe in a Mohr-Coulomb soil (kN/m; largest down, means on the way
     aside) and rotations (degrees) behind and before it, at the turn and at the end."""
-    text = (ROOT / "protocols/mpm/pipe.toml").read_text().split("\n[case.")[0]
-    begin, end = text.index("[[material]]"), text.index("[[region]]")
-    scene = folder / f"pipe_soil_{angle:g}_{across}.toml"
-    scene.write_text((text[:begin] + f"""[[material]]
-name = "soil"
-kind = "mohr_coulomb"
-density_kg_m3 = 2000
-young_modulus_Pa = 20e6
-friction_angle_deg = {angle}
-cohesion_Pa = 100
-
-""" + text[end:]).replace('"dense"', '"soil"'))
-    h, _ = run(scene.stem, scene.resolve(), "-j", "1", "--set", f"grid.cell_m={1 / across!r}", "--set", "region.0.upper_m=[9, 2.5]")
-    time, left = h["time_s"], -h["pipe.displacement_x_m"]
-    window = np.ones(max(1, round(0.05 / np.median(np.diff(time)))))
-    up, aside = (np.convolve(h[f"pipe.force_{axis}_N"] / 1e3, window / len(window), mode="same") for axis in "yx")
-    turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
-    lateral = (time > turn + 0.6) & (left < left.max())
-    watched = np.genfromtxt(folder / scene.stem / "watched.csv", delimiter=",", names=True)
-    at = np.searchsorted(watched["time_s"], turn)
-    turned = [(abs(watched[f"{k}rotation_deg"][at]), abs(watched[f"{k}rotation_deg"][-1])) for k in (2, 0)]
-    return {"forces": (up[time <= turn].max(), up[lateral].mean(), aside[lateral].mean()), "turned": turned}
+    scene = with_soil(f"pipe_soil_{angle:g}_{across}", "pipe.toml", mohr_coulomb(angle, cohesion=100))
+    h, _ = run(scene.stem, scene, "-j", "1", *sets(f"grid.cell_m={1 / across!r}", "region.0.upper_m=[9, 2.5]"))
+    down, lateral, up, aside, watched, at = forces_on_pipe(scene.stem, h)
+    turned = [(abs(watched[f"{k}.rotation_deg"][at]), abs(watched[f"{k}.rotation_deg"][-1])) for k in (2, 0)]
+    return {"forces": (up[down].max(), up[lateral].mean(), aside[lateral].mean()), "turned": turned}
 
 
 def pipe_soil():
@@ -314,12 +291,9 @@ def pipe_soil():
 
 
 def main():
-    folder.mkdir(parents=True, exist_ok=True)
-    plt.rcParams.update(STYLE)
-    {"column": column, "column_published": column_published, "footing": footing,
-     "footing_published": footing_published, "footing_published_5": footing_published_5, "pipe": pipe,
-     "pipe_soil": pipe_soil}[cases[0]]()
+    {"column": column, "column_published": column_published, "footing": footing, "footing_published": footing_published,
+     "footing_published_5": footing_published_5, "pipe": pipe, "pipe_soil": pipe_soil}[harness.words[0]]()
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

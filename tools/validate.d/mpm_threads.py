@@ -1,16 +1,15 @@
-"""tools/validate mpm_threads: what threads share of a step with three bodies on 10,000 points. mpm_threads.py RVELAB FOLDER
+"""tools/validate mpm_threads: what threads share of a step with three bodies on 10,000 points. mpm_threads.py RVELAB
+WORK RESULTS
 
 The same bits on 1, 2, 3 and 5 threads; the share of a step's instructions that are made in pieces (callgrind, any
 machine), and what two cores can make of it; best wall time of three on one and on two threads (a quiet machine)."""
 
-import pathlib
 import re
 import shutil
-import subprocess
-import sys
 
-folder = pathlib.Path(sys.argv[2])
-mpm = pathlib.Path(sys.argv[1]).resolve().with_name("rvelab-mpm")
+import harness
+from harness import mpm, sets, work
+
 SCENE = """
 [scene]
 name = "three bodies on 10,000 points"
@@ -55,28 +54,26 @@ checkpoint_every_s = 0.3
 
 
 def run(threads, *before, stop="0.3"):
-    place = folder / f"threads_{threads}"
-    shutil.rmtree(place, ignore_errors=True)
-    done = subprocess.run([*before, mpm, folder / "three.toml", "-o", place, "-q", "-j", str(threads), "--set",
-                           f"time.duration_s={stop}"], check=True, capture_output=True, text=True)
-    return place, float(re.search(r"wall ([\d.e+-]+) s", done.stdout)[1])
+    out = work / f"threads_{threads}"
+    shutil.rmtree(out, ignore_errors=True)
+    done = harness.run(*before, mpm, work / "three.toml", "-o", out, "-q", "-j", threads,
+                       *sets(f"time.duration_s={stop}"))
+    return out, float(re.search(r"wall ([\d.e+-]+) s", done.stdout)[1])
 
 
 def counted():
     """Instructions of Solver::step and stable_step, and of what they make in pieces."""
-    out = folder / "callgrind.out"
+    out = work / "callgrind.out"
     run(1, "valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", stop="0.03")
-    told = subprocess.run(["callgrind_annotate", "--inclusive=yes", "--threshold=100", out], check=True,
-                          capture_output=True, text=True).stdout
+    listed = harness.run("callgrind_annotate", "--inclusive=yes", "--threshold=100", out).stdout.splitlines()
+
     def of(name):
-        return sum(int(line.split("(")[0].replace(",", "")) for line in told.splitlines() if f"mpm::{name}(" in line)
-    return of("Solver<2>::step") + of("Solver<2>::stable_step"), of("Workers::share")
+        return sum(int(line.split("(")[0].replace(",", "")) for line in listed if f"{name}(" in line)
+    return of("mpm::Solver<2>::step") + of("mpm::Solver<2>::stable_step"), of("rvelab::Workers::share")
 
 
 def main():
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    (folder / "three.toml").write_text(SCENE)
+    (work / "three.toml").write_text(SCENE)
     ends = [{path.name: path.read_bytes() for path in run(threads)[0].iterdir() if path.name != "scene.toml"}
             for threads in (1, 2, 3, 5)]
     same = all(end == ends[0] for end in ends)
@@ -87,8 +84,8 @@ def main():
           flush=True)
     one, two = (min(run(threads)[1] for _ in range(3)) for threads in (1, 2))
     print(f"wall time, best of three: {one:.2f} s on one thread, {two:.2f} s on two: {one / two:.2f} times as fast")
-    sys.exit(0 if same and 1 / (1 - part / 2) > 1.8 else 1)
+    return not (same and 1 / (1 - part / 2) > 1.8)
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

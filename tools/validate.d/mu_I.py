@@ -9,12 +9,11 @@ biaxial test at I = 1e-2 with four spacings of its records: the angle must not k
 
 import argparse
 import math
-import pathlib
-import subprocess
-import tempfile
 
-import h5py
 import numpy as np
+
+import harness
+from harness import once, records, work
 
 RECIPE = """
 [pack]
@@ -87,93 +86,77 @@ def blocks(values, count=10):
     return values.mean(), means.std(ddof=1) / math.sqrt(count)
 
 
-def run(program, *arguments):
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"mu_I: {' '.join(map(str, arguments))}: {done.stderr.strip()}")
-    return done
+def tested(name, protocol, specimen):
+    """Records of a test."""
+    path = work / f"{name}.toml"
+    path.write_text(protocol)
+    return once(work / f"{name}.h5", "run", path, "--specimen", specimen)
 
 
-def flow(program, folder, specimen, output, plane, inertial, strain, normal):
-    """Means over the last three fifths of a steady shear, in the plane "xy" or "xz"."""
+def flow(name, specimen, plane, inertial, strain, normal):
+    """The state, and means over the last three fifths of a steady shear, in the plane "xy" or "xz"."""
     along, across = ("xyz".index(axis) for axis in plane)
     rate = inertial * math.sqrt(PRESSURE / DENSITY) / DIAMETER
-    protocol = folder / "shear.toml"
-    protocol.write_text(SHEAR.format(plane=plane, rate=rate, strain=strain, normal=normal))
-    run(program, "run", protocol, "--specimen", specimen, "-o", output, "--force")
-    with h5py.File(output) as file:
-        rows = {name: file["records/" + name][:] for name in
-                ("strain", "stress_Pa", "inertial_number", "substeps", "target_held")}
+    out = tested(name, SHEAR.format(plane=plane, rate=rate, strain=strain, normal=normal), specimen)
+    rows = records(out, "strain", "stress_Pa", "inertial_number", "substeps", "target_held")
     late = rows["strain"] > 0.4 * rows["strain"][-1]
     stress = -rows["stress_Pa"][late]
     normal_stress, shear = stress[:, across, across], -stress[:, along, across]
     mu, error = blocks(shear / normal_stress.mean())
-    return {"held": normal_stress.mean() / PRESSURE, "scatter": normal_stress.std() / normal_stress.mean(), "mu": mu,
-            "error": error, "flagged": 1 - rows["target_held"].mean(), "substeps": rows["substeps"].sum()}
+    return out, {"held": normal_stress.mean() / PRESSURE, "scatter": normal_stress.std() / normal_stress.mean(),
+                 "mu": mu,
+                 "error": error, "flagged": 1 - rows["target_held"].mean(), "substeps": rows["substeps"].sum()}
 
 
-def angle(program, folder, specimen, spacing):
+def angle(specimen, spacing):
     """Friction angle of a biaxial test, degrees: of the largest mean axial stress over 1 % of strain."""
-    protocol, output = folder / "biaxial.toml", folder / "biaxial.h5"
-    protocol.write_text(BIAXIAL.format(spacing=spacing))
-    run(program, "run", protocol, "--specimen", specimen, "-o", output, "--force")
-    with h5py.File(output) as file:
-        stress = -file["records/stress_Pa"][:]
-        inertial = np.median(file["records/inertial_number"][1:])
+    rows = records(tested(f"biaxial_{spacing:g}", BIAXIAL.format(spacing=spacing), specimen), "stress_Pa",
+                   "inertial_number")
+    stress, inertial = -rows["stress_Pa"], np.median(rows["inertial_number"][1:])
     width = max(1, round(0.01 / spacing))
     largest = np.convolve(stress[1:, 1, 1], np.ones(width) / width, "valid").max() / PRESSURE
     return math.degrees(math.asin((largest - 1) / (largest + 1))), stress[1:, 0, 0].mean() / PRESSURE, inertial
 
 
-def packed(program, folder, shape, kappa):
+def packed(shape, kappa):
     """A specimen of 1000 discs of friction 0.4, or of 500 spheres: frictionless, but of friction 0.4 at kappa = 1e6,
     where frictionless ones do not come to rest within minutes."""
-    output = folder / f"{shape}_{kappa:g}.h5"
-    if output.exists():
-        return output
     disc = shape == "disc"
     rough = disc or kappa > 1e5
     stiffness = kappa * PRESSURE * (0.1 if disc else DIAMETER)
-    recipe = folder / "recipe.toml"
+    recipe = work / f"{shape}_{kappa:g}.toml"
     recipe.write_text(RECIPE.format(shape=shape, number=1000 if disc else 500, stiffness=stiffness, half=stiffness / 2,
                                     thickness="thickness_m = 0.1" if disc else "", friction=0.4 if rough else 0,
                                     prepared=0.1 if rough else 0))
-    run(program, "pack", recipe, "-o", output)
-    return output
+    return harness.packed(recipe, recipe.stem)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
     parser.add_argument("--only", help="flows of this shape alone, or none: biaxial tests alone")
     parser.add_argument("--flows", type=int, nargs="+", help="numbers of flows in the table, from 1: these alone")
-    options = parser.parse_args()
-    program = str(pathlib.Path(options.program).resolve())
+    options = parser.parse_args(harness.words)
     if options.only != "none":
         print("shape   kappa  I      held mean  scatter  mu held            mu at constant volume  difference/error  "
               "flagged  sub-steps", flush=True)
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        for number, (shape, kappa, inertial, strain) in enumerate(FLOWS, 1):
-            if options.only not in (None, shape) or (options.flows and number not in options.flows):
-                continue
-            plane = "xy" if shape == "disc" else "xz"
-            held = flow(program, folder, packed(program, folder, shape, kappa), folder / "held.h5", plane, inertial,
-                        strain, "constant_stress")
-            fixed = flow(program, folder, folder / "held.h5", folder / "fixed.h5", plane, inertial, strain,
-                         "constant_volume")
-            apart = abs(held["mu"] - fixed["mu"]) / math.hypot(held["error"], fixed["error"])
-            print(f"{shape:<7} {kappa:<6g} {inertial:<6g} {held['held']:<10.4f} {held['scatter']:<8.4f} "
-                  f"{held['mu']:.4f} +- {held['error']:.4f}   {fixed['mu']:.4f} +- {fixed['error']:.4f}       "
-                  f"{apart:<17.2f} {held['flagged']:<8.2%} {held['substeps']:.3g}", flush=True)
-        if options.flows or options.only not in (None, "none"):
-            return
-        print("biaxial test at I = 1e-2, kappa = 1e4: record spacing, friction angle (degrees), mean lateral stress over "
-              "its target, inertial number reported")
-        for spacing in SPACINGS:
-            degrees, lateral, inertial = angle(program, folder, packed(program, folder, "disc", 1e4), spacing)
-            print(f"{spacing:<8g} {degrees:<8.2f} {lateral:<8.4f} {inertial:.5g}", flush=True)
+    for number, (shape, kappa, inertial, strain) in enumerate(FLOWS, 1):
+        if options.only not in (None, shape) or (options.flows and number not in options.flows):
+            continue
+        plane = "xy" if shape == "disc" else "xz"
+        state, held = flow(f"held_{number}", packed(shape, kappa), plane, inertial, strain, "constant_stress")
+        _, fixed = flow(f"fixed_{number}", state, plane, inertial, strain, "constant_volume")
+        apart = abs(held["mu"] - fixed["mu"]) / math.hypot(held["error"], fixed["error"])
+        print(f"{shape:<7} {kappa:<6g} {inertial:<6g} {held['held']:<10.4f} {held['scatter']:<8.4f} "
+              f"{held['mu']:.4f} +- {held['error']:.4f}   {fixed['mu']:.4f} +- {fixed['error']:.4f}       "
+              f"{apart:<17.2f} {held['flagged']:<8.2%} {held['substeps']:.3g}", flush=True)
+    if options.flows or options.only not in (None, "none"):
+        return
+    print("biaxial test at I = 1e-2, kappa = 1e4: record spacing, friction angle (degrees), mean lateral stress over "
+          "its target, inertial number reported")
+    for spacing in SPACINGS:
+        degrees, lateral, inertial = angle(packed("disc", 1e4), spacing)
+        print(f"{spacing:<8g} {degrees:<8.2f} {lateral:<8.4f} {inertial:.5g}", flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Twenty specimens each of dense, medium and loose: void ratio, stress, fabric, time; and a target that is out of reach.
 
 Bars: void ratio within 0.001; every stress component within 0.1 % of p0; Fa rms at most 2/sqrt(Nc) in 2D, 7.5/sqrt(Nc) in
@@ -6,17 +5,17 @@ Bars: void ratio within 0.001; every stress component within 0.1 % of p0; Fa rms
 misses the last by chance where all is isotropic: misses stand in the table, and the part fails where the independent
 components of a dimension together are such as one in a thousand isotropic families has (chi squared).
 
-    tools/validate.d/pack.py build/release/bin/rvelab [count]
+    pack.py RVELAB WORK RESULTS [COUNT]
 """
 
 import json
 import math
 import os
 import resource
-import subprocess
-import sys
-import tempfile
 import time
+
+import harness
+from harness import run, sets, work
 
 CASES = [
     ("discs dense", "pack_dense", 0.1874, 100e3),
@@ -38,12 +37,10 @@ def processor_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
-def pack(program, recipe, settings, folder, count, threads):
-    words = [program, "pack", recipe, "-o", os.path.join(folder, "S.h5"), "--count", str(count), "--json"]
-    words += ["--threads", str(threads)]
-    for setting in settings:
-        words += ["--set", setting]
-    return subprocess.run(words, capture_output=True, text=True)
+def pack(recipe, settings, count, threads):
+    return run(harness.program, "pack", recipe, "-o", work / "S.h5", "--count", count, "--json", "--threads", threads,
+               "--force",
+               *sets(*settings), codes=None)
 
 
 def deviator(tensor):
@@ -95,8 +92,7 @@ def judge(name, target, pressure, specimens, processor):
 
 
 def main():
-    program = os.path.realpath(sys.argv[1])
-    count = int(sys.argv[2]) if len(sys.argv) > 2 else 20
+    count = int(harness.words[0]) if harness.words else 20
     threads = int(os.environ.get("RVELAB_JOBS") or os.cpu_count())
     print(f"{threads} threads; times are of one specimen on one thread, mean (most); the load of the machine is in wall time")
     print(
@@ -106,35 +102,31 @@ def main():
     print("|" + " --- |" * 12)
     failed = False
     squares = {2: [], 3: []}
-    with tempfile.TemporaryDirectory() as folder:
-        for name, recipe, target, pressure in CASES:
-            before = processor_seconds()
-            made = pack(program, recipe, [f"target.void_ratio={target}"], folder, count, threads)
-            if made.returncode != 0:
-                print(f"| {name} | {target:.4f} | failed: {made.stderr.strip()}", flush=True)
-                failed = True
-                continue
-            specimens = json.loads(made.stdout)["specimens"]
-            ratios, misses = judge(name, target, pressure, specimens, processor_seconds() - before)
-            squares[len(specimens[0]["fabric"])] += ratios
-            # The mean fabric is judged over all cases below.
-            failed |= any(miss != "mean deviator fabric" for miss in misses)
-        for size, ratios in squares.items():
-            if len(ratios) not in CHI_SQUARED:
-                continue
-            print(
-                f"mean fabric over standard error, {size}D: {len(ratios)} independent components, sum of squares "
-                f"{sum(r * r for r in ratios):.1f}, at most {CHI_SQUARED[len(ratios)]}; {sum(abs(r) > 2 for r in ratios)} beyond 2"
-            )
-            failed |= sum(r * r for r in ratios) > CHI_SQUARED[len(ratios)]
-        for recipe, settings in OUT_OF_REACH:
-            begin = time.monotonic()
-            made = pack(program, recipe, settings, folder, 1, threads)
-            print(f"out of reach, {recipe} {' '.join(settings)}: {made.stderr.strip()} ({time.monotonic() - begin:.0f} s)")
-            failed |= made.returncode != 1 or "reached: " not in made.stderr
-    if failed:
-        sys.exit("pack: a bar was missed")
+    for name, recipe, target, pressure in CASES:
+        before = processor_seconds()
+        made = pack(recipe, [f"target.void_ratio={target}"], count, threads)
+        if made.returncode != 0:
+            print(f"| {name} | {target:.4f} | failed: {made.stderr.strip()}", flush=True)
+            failed = True
+            continue
+        specimens = json.loads(made.stdout)["specimens"]
+        ratios, misses = judge(name, target, pressure, specimens, processor_seconds() - before)
+        squares[len(specimens[0]["fabric"])] += ratios
+        # The mean fabric is judged over all cases below.
+        failed |= any(miss != "mean deviator fabric" for miss in misses)
+    for size, ratios in squares.items():
+        if len(ratios) not in CHI_SQUARED:
+            continue
+        print(f"mean fabric over standard error, {size}D: {len(ratios)} independent components, sum of squares "
+              f"{sum(r * r for r in ratios):.1f}, at most {CHI_SQUARED[len(ratios)]}; {sum(abs(r) > 2 for r in ratios)} beyond 2")
+        failed |= sum(r * r for r in ratios) > CHI_SQUARED[len(ratios)]
+    for recipe, settings in OUT_OF_REACH:
+        begin = time.monotonic()
+        made = pack(recipe, settings, 1, threads)
+        print(f"out of reach, {recipe} {' '.join(settings)}: {made.stderr.strip()} ({time.monotonic() - begin:.0f} s)")
+        failed |= made.returncode != 1 or "reached: " not in made.stderr
+    return failed
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Every protocol on the reference packings, whole: protocols.py RVELAB WORK.
+"""Every protocol on the reference packings, whole: protocols.py RVELAB WORK RESULTS [PROTOCOL...].
 
 A line for each run: records, flagged ones, grain-steps, and what the test holds: the volume (det F - 1), a stress or
 combination of stresses (largest miss of a record that is not flagged, over p), moduli of the oedometer against those of
@@ -13,25 +12,22 @@ loses its pressure and may find it again, 3 to 69 % of it with one unit in the l
 """
 import json
 import math
-import pathlib
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import h5py
 import numpy as np
 
-DATA = pathlib.Path("tests/data/yade")
-PROGRAM, WORK = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
+import harness
+from harness import YADE, imported, in_turn, mean_error, rvelab, sets, work
+
 FLAGGED = 0.01
 COPIES = 16  # of the soft packing
 
 
 def run(protocol, packing, name, *settings):
-    out = WORK / f"{name}.h5"
-    sets = [word for setting in settings for word in ("--set", setting)]
-    done = subprocess.run([PROGRAM, "run", f"protocols/{protocol}.toml", "--specimen", WORK / f"{packing}_packing.h5", "-o",
-                           out, "--force", "--json", *sets], capture_output=True, text=True)
+    out = work / f"{name}.h5"
+    done = harness.run(harness.program, "run", protocol, "--specimen", work / f"{packing}.h5", "-o", out, "--force",
+                       "--json",
+                       *sets(*settings), codes=None)
     if done.returncode != 0:
         raise RuntimeError(f"{name}: {done.stderr.strip()}")
     return Test(out, json.loads(done.stdout))
@@ -56,7 +52,7 @@ class Test:
         rows = self.last() & (self.p > 0.01 * self.p[0])
         size = self.dimension
         principal = np.linalg.eigvalsh(0.5 * (self.stress + self.stress.transpose(0, 2, 1))[rows, :size, :size])
-        return float(np.mean((principal[:, -1] - principal[:, 0]) / (principal[:, -1] + principal[:, 0])))
+        return float(np.mean(harness.sine_of(principal[:, -1], principal[:, 0])))
 
     def pressure_ratio(self):
         return float(self.p[self.last()].mean() / self.p[0])
@@ -130,7 +126,7 @@ def softened(test):
     for copy in range(1, COPIES):
         other = run("simple_shear", f"soft_{copy}", f"simple_shear_soft_{copy}")
         parts.append(other.p[late].mean() / other.p[0])
-    mean, error = np.mean(parts), np.std(parts, ddof=1) / math.sqrt(len(parts))
+    mean, error = mean_error(parts)
     return (f"{text}, mean p over gamma 0.25 to 0.5 is {mean:.1%} +- {error:.1%} of the start, {min(parts):.1%} to "
             f"{max(parts):.1%} in {COPIES} copies (YADE 15 % in one)"), good and mean < 0.3
 
@@ -178,43 +174,38 @@ def line(case):
         given = [f"test.pressure_Pa={pressure_of(packing)}"] if check is oedometer else settings
         paced = run(protocol, packing, name + "_paced", *given, "solver.target_unbalanced=1e-3")
     except (RuntimeError, KeyError) as error:
-        return f"{name:37} {error}  MISSED", 0, 0
+        return f"{name:37} {error} ", False, 0, 0
     flagged = 1 - test.held.mean()
     good = good and flagged <= FLAGGED
     means = (f"{test.mobilised():6.3f} {paced.mobilised():6.3f} {test.pressure_ratio():7.3f} {paced.pressure_ratio():7.3f}")
-    return (f"{name:37} {len(test.held):7d} {flagged:8.2%} {test.steps:11.4g} {paced.steps:11.4g} {means}  {text}  "
-            f"{'ok' if good else 'MISSED'}"), test.steps, paced.steps
+    return (f"{name:37} {len(test.held):7d} {flagged:8.2%} {test.steps:11.4g} {paced.steps:11.4g} {means}  {text} ",
+            good,
+            test.steps, paced.steps)
 
 
 def main():
-    WORK.mkdir(parents=True, exist_ok=True)
     for packing in ("dense", "medium", "soft", "noroll", "hertz"):
-        stem = DATA / packing
-        subprocess.run([PROGRAM, "import", f"{stem}.particles.csv", f"{stem}.contacts.csv", f"{stem}.json", "-o",
-                        WORK / f"{packing}_packing.h5", "--force"], check=True, stdout=subprocess.DEVNULL)
-    grains = (DATA / "soft.particles.csv").read_text().splitlines()
+        imported(packing)
+    grains = (YADE / "soft.particles.csv").read_text().splitlines()
     column = grains[0].split(",").index("r")
     for copy in range(1, COPIES):
         cells = grains[copy].split(",")
         cells[column] = repr(math.nextafter(float(cells[column]), math.inf))
-        table = WORK / f"soft_{copy}.csv"
+        table = work / f"soft_{copy}.csv"
         table.write_text("\n".join(grains[:copy] + [",".join(cells)] + grains[copy + 1:]) + "\n")
-        subprocess.run([PROGRAM, "import", table, DATA / "soft.contacts.csv", DATA / "soft.json", "-o",
-                        WORK / f"soft_{copy}_packing.h5", "--force"], check=True, stdout=subprocess.DEVNULL)
+        rvelab("import", table, YADE / "soft.contacts.csv", YADE / "soft.json", "-o", work / f"soft_{copy}.h5",
+               "--force")
     cases = [("oedometer", packing, [], oedometer) for packing in ("dense", "medium", "soft", "noroll", "hertz")] + CASES
-    if sys.argv[3:]:
-        cases = [case for case in cases if case[0] in sys.argv[3:]]
+    if harness.words:
+        cases = [case for case in cases if case[0] in harness.words]
     print(f"{'':57} grain-steps of           sin phi of     p/p0 of")
     print(f"{'protocol on packing':37} records  flagged   protocol       ratio prot.  ratio   prot.   ratio")
-    failed, sums = False, [0, 0]
-    with ThreadPoolExecutor(2) as pool:
-        for text, steps, paced in pool.map(line, cases):
-            print(text, flush=True)
-            sums = [sums[0] + steps, sums[1] + paced]
-            failed = failed or text.endswith("MISSED")
+    sums = [0, 0]
+    for text, good, steps, paced in in_turn(line, cases):
+        harness.row(text, good, good="ok")
+        sums = [sums[0] + steps, sums[1] + paced]
     print(f"{'all':37} {'':16} {sums[0]:11.4g} {sums[1]:11.4g}")
-    if failed:
-        sys.exit("protocols: bars missed")
 
 
-main()
+if __name__ == "__main__":
+    harness.main(main)

@@ -12,12 +12,12 @@ def mesh(radius, n, layers):
     numbers, nodes, cells = {}, [], []
 
     def node(face, a, b, k):
-        place = [0, 0, 0]
-        place[face], place[(face + 1) % 3], place[(face + 2) % 3] = n, a, b
-        key = (*place, k)
+        corner = [0, 0, 0]
+        corner[face], corner[(face + 1) % 3], corner[(face + 2) % 3] = n, a, b
+        key = (*corner, k)
         if key not in numbers:
             numbers[key] = len(nodes)
-            outer = 0.5 * np.array(place) / n
+            outer = 0.5 * np.array(corner) / n
             far = np.linalg.norm(outer)
             nodes.append(outer / far * (radius + (far - radius) * k / layers))
         return numbers[key]
@@ -46,8 +46,8 @@ def stiffness_matrix(nodes, cells, nu):
             if i != j:
                 strain[:, row, j::3] += along[:, :, i]
         own += np.einsum("eai,ab,ebj,e->eij", strain, law, strain, np.abs(np.linalg.det(jacobian)), optimize=True)
-    places = (3 * cells[:, :, None] + np.arange(3)).reshape(len(cells), 24)
-    return sparse.csr_matrix((own.ravel(), (np.repeat(places, 24, axis=1).ravel(), np.tile(places, (1, 24)).ravel())))
+    unknowns = (3 * cells[:, :, None] + np.arange(3)).reshape(len(cells), 24)
+    return sparse.csr_matrix((own.ravel(), (np.repeat(unknowns, 24, axis=1).ravel(), np.tile(unknowns, (1, 24)).ravel())))
 
 
 def young_of_mesh(radius, nu, n):

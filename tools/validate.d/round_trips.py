@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Files that LAMMPS writes in several styles, and text of YADE's export.text: `rvelab import` finds the same grains.
 
 Packings of tests/data go to LAMMPS as data files; LAMMPS writes them as dumps (plain, tilted box, in parts of the box,
@@ -7,21 +6,17 @@ digits that give the same double. What import reads of each is compared with wha
 positions modulo the cell. The last row is what YADE writes of the same grains by export.text (six digits).
 
 Needs lammps, yade (that row alone), python3-h5py and python3-numpy (Debian).
-
-    tools/validate.d/round_trips.py build/release/bin/rvelab
 """
 
 import gzip
-import pathlib
 import shutil
-import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy
 
-YADE = pathlib.Path(__file__).resolve().parents[2] / "tests/data/yade"
+import harness
+from harness import YADE, run, rvelab, sets, work
 
 SCRIPT = """units si
 dimension {dimension}
@@ -75,9 +70,9 @@ def stated(path, style):
         names = lines[head + 4].split()[2:]
         rows = numpy.array([line.split() for line in lines[head + 5:]], float)
         suffix = {"unwrapped": "u", "scaled": "s"}.get(style, "")
-        place = rows[:, [names.index(axis + suffix) for axis in "xyz"]]
+        position = rows[:, [names.index(axis + suffix) for axis in "xyz"]]
         radius = rows[:, names.index("radius")] if "radius" in names else rows[:, names.index("diameter")] / 2
-        atoms = numpy.column_stack([rows[:, 0], place, radius])
+        atoms = numpy.column_stack([rows[:, 0], position, radius])
     cell = numpy.diag(bounds[:, 1] - bounds[:, 0])
     cell[0, 1], cell[0, 2], cell[1, 2] = tilt
     if style == "scaled":
@@ -85,9 +80,8 @@ def stated(path, style):
     return cell, atoms[atoms[:, 0].argsort()]
 
 
-def imported(program, path, material, specimen, *more):
-    subprocess.run([program, "import", path, "--material", material, "-o", specimen, "--force", *more], check=True,
-                   capture_output=True)
+def read(path, material, specimen, *more):
+    rvelab("import", path, "--material", material, "-o", specimen, "--force", *more)
     with h5py.File(specimen) as file:
         return file["cell/lattice_m"][()], file["grains/position_m"][()], file["grains/radius_m"][()], file["grains/id"][()]
 
@@ -106,52 +100,42 @@ def compare(label, cell, atoms, found):
     box = abs(lattice - cell)[:dimension, :dimension].max() / cell.max()
     good = same and left <= 1e-15 and box <= 1e-15
     moved = int((images != 0).any(axis=1).sum())
-    print(f"{label:24} {len(radius):5} grains, ids and radii {'equal' if same else 'DIFFER'}; positions within {left:.1e} "
-          f"of the box, {100 * exact:.0f} % of the {len(radius) - moved} that stay in their image bit for bit; cell within {box:.1e}"
-          f"{'' if good else '  MISSED'}")
-    return good
+    harness.row(f"{label:24} {len(radius):5} grains, ids and radii {'equal' if same else 'DIFFER'}; positions within {left:.1e} "
+                f"of the box, {100 * exact:.0f} % of the {len(radius) - moved} that stay in their image bit for bit; cell within {box:.1e}",
+                good, good="", what=label)
 
 
 def main():
-    program, good = sys.argv[1], True
-    with tempfile.TemporaryDirectory() as folder:
-        for name, dimension in (("dense", 2), ("hertz", 3)):
-            stem = pathlib.Path(folder) / name
-            files = [str(YADE / f"{name}{suffix}") for suffix in (".particles.csv", ".contacts.csv", ".json")]
-            quiet = {"check": True, "stdout": subprocess.DEVNULL}
-            subprocess.run([program, "import", *files, "-o", f"{stem}.h5"], **quiet)
-            subprocess.run([program, "export", f"{stem}.h5", "--format", "csv", "-o", str(stem)], **quiet)
-            shear = ["--set", "stage.shear.to_strain=0.03", "--set", "stage.shear.record_every=0.03"]
-            subprocess.run([program, "run", "simple_shear", "--specimen", f"{stem}.h5", *shear, "-o", f"{stem}.test.h5"],
-                           **quiet)
-            for box, source in (("upright", f"{stem}.h5"), ("tilted", f"{stem}.test.h5")):
-                case = pathlib.Path(folder) / f"{name}_{box}"
-                subprocess.run([program, "export", source, "--format", "lammps-data", "-o", f"{case}.data"], **quiet)
-                _, atoms = stated(pathlib.Path(f"{case}.data"), "write_data")
-                script = SCRIPT.format(dimension=dimension, stem=case, cutoff=2.5 * atoms[:, 4].max())
-                case.with_suffix(".in").write_text(script)
-                done = subprocess.run(["lmp", "-in", f"{case}.in", "-log", "none"], capture_output=True, text=True)
-                if done.returncode != 0:
-                    sys.exit(f"round trips: {case.name}: " + done.stdout[-500:] + done.stderr[:500])
-                for style in ("plain", "unwrapped", "scaled", "packed.gz", "units", "liggghts", "written"):
-                    path = pathlib.Path(f"{case}.{style}")
-                    cell, atoms = stated(path, "write_data" if style == "written" else style)
-                    found = imported(program, str(path), f"{stem}.material.toml", f"{case}.back.h5")
-                    good &= compare(f"{name} {box} {style}", cell, atoms, found)
-        if shutil.which("yade"):
-            table = numpy.loadtxt(YADE / "hertz.particles.csv", delimiter=",", skiprows=0, comments=("#", "i"))
-            numpy.savetxt(f"{folder}/table", table[:, 1:5], fmt="%.17g")
-            text = pathlib.Path(folder) / "yade.txt"
-            (pathlib.Path(folder) / "export.py").write_text(EXPORT.format(table=f"{folder}/table", text=text))
-            subprocess.run(["yade", "-x", "-n", f"{folder}/export.py"], check=True, capture_output=True)
-            rows = numpy.loadtxt(text)
-            atoms = numpy.column_stack([numpy.arange(1, len(rows) + 1), rows])
-            edges = rows[:, :3].max(axis=0) - rows[:, :3].min(axis=0) + 2 * rows[:, 3].max()
-            found = imported(program, str(text), f"{folder}/hertz.material.toml", f"{folder}/y.h5", "--cell",
-                             ",".join(repr(edge) for edge in edges))
-            good &= compare("hertz, YADE's text", numpy.diag(edges), atoms, found)
-    sys.exit(not good)
+    for name, dimension in (("dense", 2), ("hertz", 3)):
+        stem = work / f"rt_{name}"
+        source, test = harness.imported(name), f"{stem}.test.h5"
+        rvelab("export", source, "--format", "csv", "-o", stem, "--force")
+        rvelab("run", "simple_shear", "--specimen", source, "-o", test, "--force",
+               *sets("stage.shear.to_strain=0.03", "stage.shear.record_every=0.03"))
+        for box, state in (("upright", source), ("tilted", test)):
+            case = work / f"{name}_{box}"
+            rvelab("export", state, "--format", "lammps-data", "-o", f"{case}.data", "--force")
+            _, atoms = stated(case.with_suffix(".data"), "write_data")
+            case.with_suffix(".in").write_text(SCRIPT.format(dimension=dimension, stem=case,
+                                                             cutoff=2.5 * atoms[:, 4].max()))
+            run("lmp", "-in", f"{case}.in", "-log", "none")
+            for style in ("plain", "unwrapped", "scaled", "packed.gz", "units", "liggghts", "written"):
+                path = case.with_name(f"{case.name}.{style}")
+                compare(f"{name} {box} {style}", *stated(path, "write_data" if style == "written" else style),
+                        read(path, f"{stem}.material.toml", f"{case}.back.h5"))
+    if shutil.which("yade"):
+        table, text, script = (work / name for name in ("table", "yade.txt", "export.py"))
+        numpy.savetxt(table, numpy.loadtxt(YADE / "hertz.particles.csv", delimiter=",", comments=("#", "i"))[:, 1:5],
+                      fmt="%.17g")
+        script.write_text(EXPORT.format(table=table, text=text))
+        run("yade", "-x", "-n", script)
+        rows = numpy.loadtxt(text)
+        atoms = numpy.column_stack([numpy.arange(1, len(rows) + 1), rows])
+        edges = rows[:, :3].max(axis=0) - rows[:, :3].min(axis=0) + 2 * rows[:, 3].max()
+        compare("hertz, YADE's text", numpy.diag(edges), atoms,
+                read(text, work / "rt_hertz.material.toml", work / "y.h5", "--cell",
+                                                                     ",".join(repr(float(edge)) for edge in edges)))
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

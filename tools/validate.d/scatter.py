@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""How scatter falls with the number of specimens and of grains: scatter.py PROGRAM [SPECIMENS] [FOLDER]
+"""How scatter falls with the number of specimens and of grains: scatter.py PROGRAM WORK RESULTS [SPECIMENS]
 
 A sweep of `rvelab fit` over the number of grains, on so many specimens each (biaxial, 20 kPa, to 5 %). Prints mean, standard
 deviation with its own standard error sd/sqrt(2 (n - 1)), the standard deviation times the root of the number of grains, which
@@ -8,22 +7,20 @@ is constant where grains are independent, and how many specimens give the fricti
 
 import csv
 import math
-import pathlib
-import subprocess
-import sys
+
+import harness
+from harness import sets, work
 
 MEASURES = {"friction_angle_deg": "friction angle", "dilation_angle_deg": "dilation angle"}
 
 
 def main():
-    program, specimens = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "20"
-    folder = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else "build/validate/scatter")
-    command = [program, "fit", "biaxial", "--recipe", "pack_dense", "--count", specimens, "--vary", "pack.number=50:1600:6:log",
-               "--set", "stage.compression.to_strain=0.05", "--set", "target.void_ratio_tolerance=0.003", "-o", str(folder),
-               "--resume"]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    out = harness.once(work / "sweep", "fit", "biaxial", "--recipe", "pack_dense", "--count", *(harness.words or [20]),
+                       "--vary",
+                       "pack.number=50:1600:6:log", *sets("stage.compression.to_strain=0.05",
+                                                          "target.void_ratio_tolerance=0.003"), resume=True)
     print("grains  specimens  measure          mean        sd             sd sqrt(grains)  specimens for 0.5 degrees")
-    with open(folder / "sweep.csv", newline="") as table:
+    with open(out / "sweep.csv", newline="") as table:
         for row in csv.DictReader(table):
             for name, words in MEASURES.items():
                 n, grains = int(row[name + "_n"]), float(row["pack.number"])
@@ -35,4 +32,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,6 +1,6 @@
 """tools/validate shapes: friction angles against the shape of grains in space, beside what was published.
 
-    shapes.py RVELAB FOLDER [--count 5]
+    shapes.py RVELAB WORK RESULTS [SPECIMENS]
 
 Triaxial compression at 100 kPa to 15 %, dense specimens of 200 grains: highest angle, and mean of 12 to 15 %.
 1. Against the aspect ratio of prolate ellipsoids: rises with elongation, then levels (Azema and Radjai 2010, Phys. Rev. E 81, 051304; Ng 2009,
@@ -12,41 +12,16 @@ Triaxial compression at 100 kPa to 15 %, dense specimens of 200 grains: highest 
    strength levels with it (Estrada, Taboada and Radjai 2008, Phys. Rev. E 78, 021301).
 Packings and contacts a grain without friction: tools/validate solids."""
 
-import json
 import math
-import pathlib
-import statistics
-import subprocess
 
-import part
-from verdict import tell_verdicts, verdict
+import harness
+from harness import PROTOCOLS, answer, kept, mean_error, specimens, verdict, work
 
-options = part.options(__doc__)
+count = int(harness.words[0]) if harness.words else 5
 
 
-def call(*words):
-    return json.loads(subprocess.run([options.program, *map(str, words), "--json"], check=True, capture_output=True, text=True).stdout)
-
-
-def kept(name, make):
-    """What `make` gives, kept in the folder."""
-    path = options.work / f"{name}.json"
-    if not path.exists():
-        path.write_text(json.dumps(make()))
-    return json.loads(path.read_text())
-
-
-def settings(**of):
-    return [word for key, value in of.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
-
-
-def packed(recipe, name, seed, **of):
-    file = options.work / f"{name}_{seed}.h5"
-    return file, call("pack", recipe, "-o", file, "--force", *settings(pack__seed=seed, **of))
-
-
-def spread(values):
-    return statistics.mean(values), statistics.stdev(values) / math.sqrt(len(values))
+def settings(of):
+    return [f"{key.replace('__', '.')}={value}" for key, value in of.items()]
 
 
 def in_words(mean_error, digits):
@@ -55,8 +30,8 @@ def in_words(mean_error, digits):
 
 def recipe_of(shape):
     """pack_ellipsoids with other grains."""
-    text = (pathlib.Path(__file__).resolve().parents[2] / "protocols/pack_ellipsoids.toml").read_text()
-    file = options.work / f"{shape}.toml"
+    text = (PROTOCOLS / "pack_ellipsoids.toml").read_text()
+    file = work / f"{shape}.toml"
     if shape == "clump":
         text = text.replace('shape = "ellipsoid"', 'shape = "clump"\nmembers = "sphere"').replace("half_axes = [1.25, 1, 0.8]", 'clump = "pair"')
     else:
@@ -69,11 +44,11 @@ def recipe_of(shape):
 def angles(name, recipe="pack_ellipsoids", **of):
     """Highest friction angle and that of 12 to 15 %, degrees."""
     def make():
-        files = [packed(recipe, f"sheared_{name}", seed, pack__number=200, **of)[0] for seed in range(1, options.count + 1)]
-        tests = call("run", "triaxial", "--specimen", *files, "-o", options.work / f"R_{name}", "--force", "--threads", 1,
-                     *settings(stage__compression__to_strain=0.15))["tests"]
+        files = specimens(recipe, f"sheared_{name}", count, "pack.number=200", *settings(of))
+        tests = answer("run", "triaxial", "--specimen", *files, "-o", work / f"R_{name}", "--force", "--threads", 1,
+                       *harness.sets("stage.compression.to_strain=0.15"))["tests"]
         return [(test["friction_angle_deg"], test["large_strain_friction_angle_deg"]) for test in tests]
-    return [spread(column) for column in zip(*kept(name, make))]
+    return [mean_error(column) for column in zip(*kept(name, make))]
 
 
 def rises(series, first, last, column):
@@ -109,7 +84,7 @@ def clumps():
 
 
 def main():
-    print(f"{options.count} specimens each; mean +- standard error")
+    print(f"{count} specimens each; mean +- standard error")
     for title, values, setting, claim in (
             ("aspect ratio", (1, 1.25, 1.5, 2, 3), lambda v: {"grains__half_axes": [v, 1, 1]}, (1, 1.5)),
             ("exponents", (2, 3, 4), lambda v: {"pack__shape": "superellipsoid", "grains__half_axes": [1, 1, 1],
@@ -128,7 +103,7 @@ def main():
             verdict("aspect ratio: levels, 2 to 3 beside 1 to 1.5", f"{late[0]:.1f} +- {late[1]:.1f}", f"< half of {early[0]:.1f}",
                     late[0] < 0.5 * early[0])
     clumps()
-    tell_verdicts()
 
 
-main()
+if __name__ == "__main__":
+    harness.main(main)

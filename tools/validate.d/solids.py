@@ -1,4 +1,5 @@
-"""tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB [NUMBER [SPECIMENS]]
+"""tools/validate solids: random packings of ellipsoids without friction. solids.py RVELAB WORK RESULTS [NUMBER
+[SPECIMENS]]
 
 Solid fraction and mechanical coordination number beside what is published. Without friction a random packing has as many
 contacts as its grains have degrees of freedom, two a contact: Z is 6 of spheres, at most 10 of spheroids and 12 of ellipsoids;
@@ -6,16 +7,12 @@ near spheres they are hypostatic (Donev et al. 2007, Phys. Rev. E 75). Spheres t
 and have a little more."""
 import collections
 import csv
-import json
 import statistics
-import subprocess
-import sys
-import tempfile
 
-from verdict import tell_verdicts, verdict
+import harness
+from harness import answer, rvelab, verdict, work
 
-program, number, specimens = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 200, \
-    int(sys.argv[3]) if len(sys.argv) > 3 else 5
+number, specimens = map(int, [*harness.words, *(200, 5)[len(harness.words):]])
 # Half axes, friction, solid fraction and Z as published.
 shapes = [("spheres", [1, 1, 1], 0, (0.64, 0.64), (6, 6)),
           ("spheres that do not slide", [1, 1, 1], 100, None, (4, 4)),
@@ -37,24 +34,17 @@ def skeleton(path, least):
         pairs = kept
 
 
-def packed(half, friction, seed, folder):
+def packed(half, friction, seed):
     """Solid fraction and contacts a grain of one packing."""
-    sets = ["pack.number=" + str(number), "pack.seed=" + str(seed), "grains.half_axes=" + str(half),
-            "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3", "preparation.friction=" + str(friction),
-            "material.quartz.friction=" + str(friction), "target.pressure_Pa=1e5", "target.unbalanced=1e-3",
-            "target.stress_tolerance=1e-2"]
-    file = f"{folder}/{seed}"
-    arguments = [program, "pack", "pack_ellipsoids", "-o", file + ".h5"]
-    for each in sets:
-        arguments += ["--set", each]
-    made = subprocess.run(arguments, capture_output=True, text=True)
-    if made.returncode != 0:
-        sys.exit(made.stderr)
-    state = json.loads(subprocess.run([program, "inspect", file + ".h5", "--json"], capture_output=True,
-                                      text=True, check=True).stdout)
-    subprocess.run([program, "export", file + ".h5", "--format", "csv", "-o", file],
-                   capture_output=True, check=True)
-    return 1 / (1 + state["void_ratio"]), skeleton(file + ".contacts.csv", 2 if friction else 4)
+    file = harness.packed("pack_ellipsoids", f"{'_'.join(map(str, half))}_{friction}_{seed}", f"pack.number={number}",
+                          f"pack.seed={seed}",
+                          f"grains.half_axes={half}", "grains.smallest_radius_m=1e-3", "grains.largest_radius_m=1e-3",
+                          f"preparation.friction={friction}", f"material.quartz.friction={friction}",
+                          "target.pressure_Pa=1e5",
+                          "target.unbalanced=1e-3", "target.stress_tolerance=1e-2")
+    rvelab("export", file, "--format", "csv", "-o", work / file.stem, "--force")
+    return 1 / (1 + answer("inspect", file)["void_ratio"]), skeleton(work / f"{file.stem}.contacts.csv",
+                                                                     2 if friction else 4)
 
 
 def between(value, bounds, below, above):
@@ -66,12 +56,17 @@ def span(bounds, below, above):
         f" +- {below:g}" if below == above else f" - {below:g} + {above:g}")
 
 
-print(f"{number} grains of one size, {specimens} specimens of each; 100 kPa of 7 GPa; mean +- standard deviation")
-for name, half, friction, fraction, Z in shapes:
-    with tempfile.TemporaryDirectory() as folder:
-        fractions, contacts = zip(*(packed(half, friction, seed, folder) for seed in range(1, specimens + 1)))
-    for what, values, asked, room in (("solid fraction", fractions, fraction, (0.01, 0.01)), ("Z of the skeleton", contacts, Z, (0.2, 0.6))):
-        if asked:
-            verdict(f"{name}: {what}", f"{statistics.mean(values):.3f} +- {statistics.stdev(values):.3f}", span(asked, *room),
-                    between(statistics.mean(values), asked, *room))
-tell_verdicts()
+def main():
+    print(f"{number} grains of one size, {specimens} specimens of each; 100 kPa of 7 GPa; mean +- standard deviation")
+    for name, half, friction, fraction, Z in shapes:
+        fractions, contacts = zip(*(packed(half, friction, seed) for seed in range(1, specimens + 1)))
+        for what, values, asked, margin in (("solid fraction", fractions, fraction, (0.01, 0.01)),
+                                            ("Z of the skeleton", contacts, Z, (0.2, 0.6))):
+            if asked:
+                verdict(f"{name}: {what}", f"{statistics.mean(values):.3f} +- {statistics.stdev(values):.3f}",
+                        span(asked, *margin),
+                        between(statistics.mean(values), asked, *margin))
+
+
+if __name__ == "__main__":
+    harness.main(main)

@@ -1,12 +1,11 @@
-#!/usr/bin/python3
-"""Large simple shear against LAMMPS: steady_state.py RVELAB REFERENCE WORK [FIGURE].
+"""Large simple shear against LAMMPS: steady_state.py RVELAB WORK RESULTS.
 
-Runs protocols/large_shear.toml from the starts of REFERENCE/lammps/rve/init and holds the means over 4 < gamma <= 10
-against REFERENCE/lammps/rve/steady_state.csv: contact pressure p, shear stress Pxz, trace of the Reynolds stress tr R,
-and ratio = tr R / tr P, each within 4 sqrt(se^2 + se_own^2) at porosities 0.738, 0.548, 0.371; at 0.282 from random starts
-within 5 %, or within 2 sqrt(se^2 + se_own^2) where two means of that scatter could not tell 5 % (the fcc start has no unique
-steady state and is shown only). se: the larger of the standard errors
-of 12 blocks and between the runs. The figure draws ratio against porosity.
+Runs protocols/large_shear.toml from the starts of ../shared/reference/lammps/rve/init and holds the means over 4 <
+gamma <= 10 against lammps/rve/steady_state.csv: contact pressure p, shear stress Pxz, trace of the Reynolds stress tr
+R, and ratio = tr R / tr P, each within 4 sqrt(se^2 + se_own^2) at porosities 0.738, 0.548, 0.371; at 0.282 from random
+starts within 5 %, or within 2 sqrt(se^2 + se_own^2) where two means of that scatter could not tell 5 % (the fcc start
+has no unique steady state and is shown only). se: the larger of the standard errors of 12 blocks and between the runs.
+The figure draws ratio against porosity.
 
 Then protocols/complex_loading.toml from the first start of porosity 0.548: the volume is that of its velocity gradient to
 1e-12, and Reynolds over contact stress falls as the spheres come closer.
@@ -15,13 +14,13 @@ At 0.282 tr R of one run wanders by a tenth, so each random start is sheared thr
 some 1e-9 m: before gamma = 4 chaos has made runs of their own of them. LAMMPS' mean there has a standard error of 3.3 %.
 """
 import csv
-import pathlib
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
 
-import h5py
 import numpy as np
+
+import harness
+from harness import REFERENCE, bars, in_turn, once, records, results, row, sets, work
+
+REFERENCE = REFERENCE / "lammps/rve"
 
 CASES = {"n738": (0.738, "4 se"), "n548": (0.548, "4 se"), "n371": (0.371, "4 se"), "n282": (0.282, "5 %"),
          "fcc282": (0.282, "shown")}
@@ -30,10 +29,10 @@ RUNS = {case: [f"s{seed}" for seed in (1, 2, 3)] for case in CASES}
 RUNS["n282"] += [f"s{seed}_r{again}" for again in (1, 2) for seed in (1, 2, 3)]
 
 
-def start_of(reference, work, name):
+def start_of(name):
     """The start as LAMMPS had it, or moved: NAME is CASE_sSEED or CASE_sSEED_rNUMBER."""
     given, _, again = name.partition("_r")
-    path = reference / "init" / f"{given}.csv"
+    path = REFERENCE / "init" / f"{given}.csv"
     if not again:
         return path
     moved = work / f"{name}.csv"
@@ -45,46 +44,39 @@ def start_of(reference, work, name):
     return moved
 
 
-def make(program, start, work, name):
-    material, specimen, records = work / "grains.toml", work / f"{name}.h5", work / f"R_{name}.h5"
-    subprocess.run([program, "import", start, "--cell", "2,2,2", "--material", material, "-o", specimen], check=True,
-                   stdout=subprocess.DEVNULL)
+def make(name):
+    specimen = once(work / f"{name}.h5", "import", start_of(name), "--cell", "2,2,2", "--material",
+                    work / "grains.toml")
     # n282 starts with overlaps of a tenth of a diameter.
-    subprocess.run([program, "run", "protocols/large_shear.toml", "--specimen", specimen, "-o", records, "--resume",
-                    "--set", "stage.shear.record_every=0.002", "--set", "solver.max_overlap_ratio=1"],
-                   check=True, stdout=subprocess.DEVNULL)
-    return records
+    return once(work / f"R_{name}.h5", "run", "large_shear", "--specimen", specimen,
+                *sets("stage.shear.record_every=0.002", "solver.max_overlap_ratio=1"), resume=True)
 
 
-def complex_loading(program, work):
-    """Lines of text, and whether the bars are met."""
-    records = work / "R_complex_loading.h5"
-    subprocess.run([program, "run", "protocols/complex_loading.toml", "--specimen", work / "n548_s1.h5", "-o", records,
-                    "--resume"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(records) as file:
-        strain, void_ratio = file["records/strain"][:], file["records/void_ratio"][:]
-        volume = np.linalg.det(file["records/deformation_gradient"][-1])
-        contact, reynolds = (-np.trace(file[f"records/{name}_stress_Pa"][:], axis1=1, axis2=2)
-                             for name in ("contact", "reynolds"))
-    yield f"\ncomplex loading from n548: volume ratio {volume:.15f}, that of the flow {np.exp(-0.2):.15f}", \
-        abs(volume - np.exp(-0.2)) <= 1e-12
+def complex_loading():
+    """Prints its table."""
+    out = once(work / "R_complex_loading.h5", "run", "complex_loading", "--specimen", work / "n548_s1.h5", resume=True)
+    found = records(out, "strain", "void_ratio", "deformation_gradient", "contact_stress_Pa", "reynolds_stress_Pa")
+    strain, void_ratio = found["strain"], found["void_ratio"]
+    volume = np.linalg.det(found["deformation_gradient"][-1])
+    contact, reynolds = (-np.trace(found[f"{name}_stress_Pa"], axis1=1, axis2=2) for name in ("contact", "reynolds"))
+    row(f"\ncomplex loading from n548: volume ratio {volume:.15f}, that of the flow {np.exp(-0.2):.15f} ",
+        abs(volume - np.exp(-0.2)) <= 1e-12, good="")
     before = np.inf
-    yield "gamma     porosity  p, Pa      Reynolds/contact", True
+    print("gamma     porosity  p, Pa      Reynolds/contact")
     for begin, end in ((1, 4), (4, 7), (7, 10)):
         inside = (strain > begin) & (strain <= end + 1e-9)
         ratio = reynolds[inside].mean() / contact[inside].mean()
         porosity = (void_ratio[inside] / (1 + void_ratio[inside])).mean()
-        yield f"{begin:2} to {end:2}  {porosity:.3f}     {contact[inside].mean() / 3:8.1f}   {ratio:.4f}", ratio < before
+        row(f"{begin:2} to {end:2}  {porosity:.3f}     {contact[inside].mean() / 3:8.1f}   {ratio:.4f} ",
+            ratio < before, good="")
         before = ratio
 
 
 def quantities(path):
     """Blocks of the four quantities, (BLOCKS, 4), Pa, compression positive."""
-    with h5py.File(path) as file:
-        strain = file["records/strain"][:]
-        inside = (strain > 4) & (strain <= 10 + 1e-9)
-        contact = -file["records/contact_stress_Pa"][:][inside]
-        reynolds = -file["records/reynolds_stress_Pa"][:][inside]
+    strain, contact, reynolds = records(path, "strain", "contact_stress_Pa", "reynolds_stress_Pa").values()
+    inside = (strain > 4) & (strain <= 10 + 1e-9)
+    contact, reynolds = -contact[inside], -reynolds[inside]
     trace_p, trace_r = np.trace(contact, axis1=1, axis2=2), np.trace(reynolds, axis1=1, axis2=2)
     series = np.stack([trace_p / 3, contact[:, 2, 0], trace_r], axis=1)
     blocks = np.array([block.mean(axis=0) for block in np.array_split(series, BLOCKS)])
@@ -96,27 +88,25 @@ def allowed(rule, expected, error):
     return 4 * error if rule == "4 se" else max(0.05 * abs(expected), 2 * error)
 
 
-def row_of(case, quantity, mean, own, expected, se, bound):
-    """A row of the table and its verdict; without a bound it is shown, beside 5 %."""
+@bars
+def steady_row(case, quantity, mean, own, expected, se):
+    """A row of the table and its verdict; fcc282, whose steady state is not unique, is shown beside 5 %."""
+    rule = CASES[case][1]
+    bound = 0.05 * abs(expected) if rule == "shown" else allowed(rule, expected, np.hypot(se, own))
     off = abs(mean - expected)
-    verdict = "shown" if bound is None else "ok" if off <= bound else "MISSED"
-    return (f"{case:7} {quantity:8} {mean:13.6g} {own:12.3g} {expected:12.6g} {se:12.3g} "
-            f"{off / abs(expected):9.2%} {0.05 if bound is None else bound / abs(expected):8.2%}  {verdict}"), verdict
+    row(f"{case:7} {quantity:8} {mean:13.6g} {own:12.3g} {expected:12.6g} {se:12.3g} {off / abs(expected):9.2%} "
+        f"{bound / abs(expected):8.2%} ", rule == "shown" or off <= bound, good="shown" if rule == "shown" else "ok",
+        what=f"{case} {quantity}")
 
 
 def main():
-    program, reference, work = sys.argv[1], pathlib.Path(sys.argv[2]) / "lammps/rve", pathlib.Path(sys.argv[3])
-    work.mkdir(parents=True, exist_ok=True)
     (work / "grains.toml").write_text('[contact]\nlaw = "hertz_stiffness"\n[[material]]\nnormal_stiffness_N_m1_5 = 2e7\n')
     there = {}
-    with open(reference / "steady_state.csv") as file:
-        for row in csv.DictReader(file):
-            there[row["case"], row["quantity"]] = (float(row["mean"]), float(row["se"]), row["per_seed_means"])
+    with open(REFERENCE / "steady_state.csv") as file:
+        for line in csv.DictReader(file):
+            there[line["case"], line["quantity"]] = (float(line["mean"]), float(line["se"]), line["per_seed_means"])
     names = [f"{case}_{run}" for case in CASES for run in RUNS[case]]
-    with ThreadPoolExecutor(2) as pool:
-        files = dict(zip(names, pool.map(lambda name: make(program, start_of(reference, work, name), work, name),
-                                         names)))
-    failed, curve = [], []
+    files, curve = dict(zip(names, in_turn(make, names))), []
     print("case    quantity        rvelab       se_own       LAMMPS           se   deviation  allowed  verdict")
     for case, (porosity, rule) in CASES.items():
         seeds = np.array([quantities(files[f"{case}_{run}"]) for run in RUNS[case]])
@@ -127,31 +117,19 @@ def main():
         curve.append((porosity, case, mean[3], own[3], *there[case, "ratio"][:2]))
         for k, quantity in enumerate(("p", "Pxz", "trR", "ratio")):
             expected, se, per_seed = there[case, quantity]
-            bound = allowed(rule, expected, np.hypot(se, own[k]))
-            row, verdict = row_of(case, quantity, mean[k], own[k], expected, se, None if rule == "shown" else bound)
-            if verdict == "MISSED":
-                failed.append(f"{case} {quantity}")
-            print(row)
+            steady_row(case, quantity, mean[k], own[k], expected, se)
             if rule == "shown":
                 print(f"        per seed: rvelab {' '.join(f'{m:.4g}' for m in means[:, k])}; LAMMPS {per_seed}")
     print("\nporosity  Reynolds/contact (rvelab)  (LAMMPS)   Qu et al.")
     paper = {"n738": "0.5", "n548": "at least one order below", "n371": "three orders below", "n282": "three orders below"}
     for porosity, case, value, own, expected, se in sorted(curve):
         print(f"{porosity:.3f} {case:7} {value:.4g} +- {own:.2g}   {expected:.4g} +- {se:.2g}   {paper.get(case, '-')}")
-    for text, good in complex_loading(program, work):
-        print(text + ("" if good else "  MISSED"))
-        if not good:
-            failed.append("complex loading")
-    if len(sys.argv) > 4:
-        draw(curve, sys.argv[4])
-    if failed:
-        sys.exit(f"steady state: {', '.join(failed)}")
+    complex_loading()
+    draw(curve, results / "steady_state.png")
 
 
 def draw(curve, path):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = harness.pyplot()
     figure, axes = plt.subplots(figsize=(6, 4.2), dpi=150)
     random = [row for row in sorted(curve) if not row[1].startswith("fcc")]
     axes.errorbar([r[0] for r in random], [r[2] for r in random], [r[3] for r in random], fmt="o-", label="rvelab")
@@ -162,13 +140,10 @@ def draw(curve, path):
     axes.axhline(1e-3, color="0.6", lw=0.8, ls="--")
     axes.annotate("Qu et al. at 0.738: 0.5", (0.3, 0.56), color="0.4", fontsize=8)
     axes.annotate("Qu et al. at 0.371 and 0.282: below 1e-3", (0.46, 6.5e-4), color="0.4", fontsize=8)
-    axes.set_yscale("log")
-    axes.set_xlabel("porosity")
-    axes.set_ylabel("tr(Reynolds stress) / tr(contact stress)")
+    axes.set(yscale="log", xlabel="porosity", ylabel="tr(Reynolds stress) / tr(contact stress)")
     axes.legend(frameon=False)
     figure.savefig(path, bbox_inches="tight")
-    print(f"figure: {path}")
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

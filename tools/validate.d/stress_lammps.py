@@ -106,7 +106,7 @@ def write_data(folder, box, x, v, mass, radius):
 
 
 def moved(folder, dimension, box, x, v, mass, law, step, steps, every, boundary="p p p", mixing=()):
-    """Places and velocities of free grains of radius 1 every so many steps: arrays (frames, grains, 3)."""
+    """Positions and velocities of free grains of radius 1 every so many steps: arrays (frames, grains, 3)."""
     write_data(folder, box, x, v, mass, 1.0)
     lmp(opening(dimension, boundary) + law + motion(dimension, step) + list(mixing) +
         [f"dump 1 all custom {every} dump x y z vx vy vz", "dump_modify 1 sort id format float %.17g", f"run {steps}"],
@@ -209,21 +209,21 @@ class Gas:
         self.box = [(-high, high)] * dimension + [(-0.5, 0.5)] * (3 - dimension)
 
     def start(self, seed):
-        random, places = numpy.random.default_rng(seed), []
-        while len(places) < self.grains:
+        random, centres = numpy.random.default_rng(seed), []
+        while len(centres) < self.grains:
             x = numpy.append(random.uniform(-0.5, 0.5, self.dimension) * self.side, [0.0] * (3 - self.dimension))
-            if not places or numpy.linalg.norm(self.nearest(x - numpy.array(places)), axis=1).min() > 2:
-                places.append(x)
+            if not centres or numpy.linalg.norm(self.nearest(x - numpy.array(centres)), axis=1).min() > 2:
+                centres.append(x)
         v = numpy.zeros((self.grains, 3))
         v[:, :self.dimension] = random.standard_normal((self.grains, self.dimension))
         v -= v.mean(axis=0)
-        return numpy.array(places), v * math.sqrt(self.dimension * self.grains / (v**2).sum())
+        return numpy.array(centres), v * math.sqrt(self.dimension * self.grains / (v**2).sum())
 
     def nearest(self, b):
         return b - self.side * numpy.round(b / self.side)
 
     def energy(self, x, v):
-        """LAMMPS keeps no elastic energy of granular contacts: from the places."""
+        """LAMMPS keeps no elastic energy of granular contacts: from the positions."""
         i, j = numpy.triu_indices(self.grains, 1)
         overlap = numpy.maximum(0, 2 - numpy.linalg.norm(self.nearest(x[i] - x[j]), axis=1))
         elastic = 0.4 * self.constant * overlap**2.5 if self.hertz else 0.5 * self.constant * overlap**2

@@ -17,9 +17,9 @@ class Packing:
     def __init__(self, dimension, hertz, length=1.0, force=1.0, side=6, spacing=1.98):
         self.dimension, self.hertz, self.length, self.force = dimension, hertz, length, force
         axes = numpy.meshgrid(*[numpy.arange(side)] * dimension, indexing="ij")
-        places = numpy.stack(axes, -1).reshape(-1, dimension)
-        shaken = (places - 0.5 * side + 0.5) * spacing + numpy.random.default_rng(5).uniform(-5e-3, 5e-3, places.shape)
-        self.x = numpy.zeros((len(places), 3))
+        sites = numpy.stack(axes, -1).reshape(-1, dimension)
+        shaken = (sites - 0.5 * side + 0.5) * spacing + numpy.random.default_rng(5).uniform(-5e-3, 5e-3, sites.shape)
+        self.x = numpy.zeros((len(sites), 3))
         self.x[:, :dimension] = shaken * length
         high = 0.5 * side * spacing * length
         self.box = [(-high, high)] * dimension + [(-0.5 * length, 0.5 * length)] * (3 - dimension)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The cases of tests/extreme, and put to LAMMPS where LAMMPS can express them.
 
 Both are judged by the case's own criterion and tolerance. LAMMPS knows no step of its own: it gets what its users take,
@@ -7,9 +6,9 @@ it a twentieth. Linear contacts have the exact dashpot of the restitution, Hertz
 refusal is asked for and LAMMPS has no such check, the column says what happens. "-": cannot be expressed. Cases
 at small fixed steps (resolved) ask whether the criterion is one, and are no question to LAMMPS.
 
-    tools/validate.d/stress_peers.py             # runs them first, long
-    tools/validate.d/stress_peers.py --json FILE # reuses what test_extreme wrote (RVELAB_JSON)
-    tools/validate.d/stress_peers.py --case impact
+    stress_peers.py RVELAB WORK RESULTS             # runs them first, long
+    stress_peers.py RVELAB WORK RESULTS --json FILE # reuses what test_extreme wrote (RVELAB_JSON)
+    stress_peers.py RVELAB WORK RESULTS --case impact
 """
 import argparse
 import collections
@@ -24,10 +23,9 @@ import sys
 import tempfile
 import tomllib
 
+import harness
 import stress_lammps as grains
 import stress_lammps_boxes as boxes
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # experiment: what puts it to LAMMPS, and defaults of parameters (tests/extreme/*.cpp)
 IMPACT = {"dimension": 3, "hertz": 0, "speed": 0.1, "phases": 20}
@@ -89,19 +87,18 @@ class Case:
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tests", nargs="?", default=str(ROOT / "build/release/bin/test_extreme"))
     parser.add_argument("--json", help="what the tests wrote before")
     parser.add_argument("--case", action="append", default=[], help="only cases whose names begin so")
     parser.add_argument("--gases", type=int, default=4, help="at most so many cool in LAMMPS, a minute each; 0: none")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
-    return parser.parse_args()
+    return parser.parse_args(harness.words)
 
 
 def answers(options):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(options.json or folder + "/answers.json")
         if not options.json:  # whether some are WRONG the table says
-            subprocess.run([options.tests, "the matrix"], stdout=subprocess.DEVNULL,
+            subprocess.run([harness.program.with_name("test_extreme"), "the matrix"], stdout=subprocess.DEVNULL,
                            env={**os.environ, "RVELAB_CASES": " ".join(options.case) or "all",
                                 "RVELAB_JOBS": str(options.jobs), "RVELAB_JSON": str(file)})
         if not file.exists():
@@ -111,7 +108,7 @@ def answers(options):
 
 
 def version():
-    text = subprocess.run(["lmp", "-h"], capture_output=True, text=True).stdout
+    text = harness.run("lmp", "-h", codes=None).stdout
     return re.search(r"Simulator - (.*)", text).group(1).strip()
 
 
@@ -123,7 +120,7 @@ def count(texts):
 def main():
     options = arguments()
     rows = answers(options)
-    with open(ROOT / "tests/extreme/matrix.toml", "rb") as file:
+    with open(harness.ROOT / "tests/extreme/matrix.toml", "rb") as file:
         table = {one["name"]: {**series, **one} for series in tomllib.load(file)["series"] for one in series["case"]}
     cases = [Case(row["name"], table, options.gases) for row in rows]
     with tempfile.TemporaryDirectory() as folder:
@@ -151,4 +148,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Cells under large strain: thin.py RVELAB WORK [PART...] [RECIPE...]. Parts: rate, rest, pure (default: all).
+"""Cells under large strain: thin.py RVELAB WORK RESULTS [PART...] [RECIPE...]. Parts: rate, rest, pure (default: all).
 
 rate: a specimen of every recipe (or of those named) sheared v_x(y), in space v_x(z), to gamma = 1e4 at dt > 0: of pack_regular
 and four recipes of discs as it is, of the others 100 discs or 200 spheres, whose cell is thin the sooner. rest: to 300 at dt = 0
@@ -9,23 +8,19 @@ pure: upright and oriented specimens of discs, compressed at constant volume to 
 dt > 0 and at dt = 0, at dt = 0 of pack_medium and pack_dense 20 each of 400 grains and ten of 1600: heights of the upright
 cell, p and sin phi by strain, of the records that are not flagged as thin; which are.
 
-    thin.py --kept TABLE...: the verdicts of pure shear of kept tables anew, by their figures.
-
-Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and told, and p and sin phi of
+Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and reported, and p and sin phi of
 the others are as in oriented cells, as far as means of so many specimens tell; below ten mean diameters they are off, and the
-run tells of a low cell. Where a higher cell differs by as much at the same strain (1600 grains beside 400), it is no matter of the
+run warns of a low cell. Where a higher cell differs by as much at the same strain (1600 grains beside 400), it is no matter of the
 height: the row says DIFFERS.
 """
-import pathlib
-import re
-import subprocess
-import sys
 import time
 
 import h5py
 import numpy as np
 
-PROTOCOLS = pathlib.Path("protocols").resolve()
+import harness
+from harness import PROTOCOLS, bars, records, row, work
+
 RECIPES = sorted(path.stem for path in PROTOCOLS.glob("pack_*.toml"))
 WHOLE = ("pack_dense", "pack_medium", "pack_loose", "pack_soft")
 SPHERES = ("pack_hertz", "pack_mixture", "pack_qu282", "pack_qu371", "pack_qu548", "pack_qu738")
@@ -58,113 +53,59 @@ def beyond(freedom):
     return float(t[np.argmax(above < LEVEL / COMPARISONS)])
 
 
-class Row:
-    """Of a table of pure shear: what is printed before the verdict; height over d; p over that of oriented cells and its standard
-    error; differences of p and sin phi over their standard errors."""
-
-    def __init__(self, text):
-        self.text = text
-        self.height = float(text.split()[3])
-        compared = re.search(r"   +([\d.]+) +(-?[\d.]+) +(-?[\d.]+)$", text) if len(text.split()) > 12 else None
-        self.compared = [float(each) for each in compared.groups()] if compared else None
-
-    def strain(self):
-        return self.text.split()[0]
-
-    def error(self):
-        """Of p over that of oriented cells; at least what rounding in the table leaves."""
-        ratio, apart, _ = self.compared
-        return max(abs(ratio - 1), 0.005) / max(abs(apart), 0.05)
+def error_of(compared):
+    """Of p over that of oriented cells; at least what rounding in the table leaves."""
+    ratio, apart, _ = compared
+    return max(abs(ratio - 1), 0.005) / max(abs(apart), 0.05)
 
 
+@bars
 def judge(tables):
-    """Prints tables (head, seeds, rows, tail) of one recipe, one size after the other; missed bars."""
-    missed = 0
+    """Prints tables of one recipe, one size after the other: head, number of seeds, rows, tail. A row: its text,
+    strain, height over d, and, compared with oriented cells, p over theirs and the differences of p and sin phi over
+    their standard errors, or nothing."""
     for k, (head, seeds, rows, tail) in enumerate(tables):
-        bar, different = beyond(2 * seeds - 2), []
+        bar = beyond(2 * seeds - 2)
         print(head, flush=True)
-        for row in rows:
-            word = ""
-            if row.compared and max(map(abs, row.compared[1:])) > bar:
-                others = [other for j, table in enumerate(tables) if j != k for other in table[2]
-                          if other.strain() == row.strain() and other.compared and other.height >= 10]
-                same = [other for other in others
-                        if abs(other.compared[0] - row.compared[0]) <= 3 * np.hypot(row.error(), other.error())]
-                if row.height < 10:
-                    word = " low"
-                elif same and abs(row.compared[2]) <= bar:
-                    word = " DIFFERS"
-                    different.append(f"{row.compared[0]:.2f} at {row.height:.0f} d, {same[0].compared[0]:.2f} at {same[0].height:.0f} d")
-                else:
-                    word = " MISSED"
-                    missed += 1
-            print(row.text + word, flush=True)
+        for text, strain, height, compared in rows:
+            apart = bool(compared) and max(map(abs, compared[1:])) > bar
+            others = [(other_height, other) for j, table in enumerate(tables) if j != k
+                      for _, at, other_height, other in table[2]
+                      if at == strain and other and other_height >= 10]
+            same = [(at, other) for at, other in others
+                    if apart and abs(other[0] - compared[0]) <= 3 * np.hypot(error_of(compared), error_of(other))]
+            low = apart and height < 10
+            row(text, not apart or low, apart and bool(same) and abs(compared[2]) <= bar,
+                f"p depends on how the edges of the periodic cell lie to the strain, not on its height: over that of oriented cells\n"
+                f"    at the same strain {compared[0]:.2f} at {height:.0f} d, {same[0][1][0]:.2f} at {same[0][0]:.0f} d" if same else "",
+                good="low" if low else "", what=f"{head.split(',')[2].strip()}, {strain}")
         print(tail + f"; bar {bar:.1f} standard errors", flush=True)
-        if different:
-            print("  why: p depends on how the edges of the periodic cell lie to the strain, not on its height: over that of oriented\n"
-                  "  cells at the same strain " + "; ".join(different), flush=True)
-    return missed
 
 
-def kept(path):
-    """A kept table with new verdicts of its pure shear."""
-    lines, k, missed = pathlib.Path(path).read_text().splitlines(), 0, 0
-    groups = {}
-    head = re.compile(r"pure shear at constant volume, (dt [>=] 0), (pack_\w+), (\d+) grains")
-    plain = lambda line: re.sub(r" (MISSED|low|DIFFERS)$", "", line)
-    while k < len(lines):
-        found = head.match(lines[k])
-        if not found:
-            if groups:
-                missed += sum(judge(tables) for tables in groups.values())
-                groups = {}
-            if lines[k] != "thin: bars missed":
-                print(lines[k])
-            k += 1
-            continue
-        end = next(j for j in range(k, len(lines)) if "told of as low" in lines[j])
-        each = {"pack_loose": 5, "pack_medium": 20, "pack_dense": 20}[found[2]]
-        seeds = each if found[3] == "400" else 10
-        groups.setdefault((found[1], found[2]), []).append(
-            (lines[k], seeds, [Row(plain(line)) for line in lines[k + 1:end]], lines[end].split("; bar")[0]))
-        k = end + 1
-        while k < len(lines) and lines[k].startswith(("  why:", "  cells at")):
-            k += 1
-    return missed + sum(judge(tables) for tables in groups.values())
+def packed(recipe, *settings):
+    made = harness.packed(recipe, "_".join([recipe, *(each.split("=")[1] for each in settings)]), *settings,
+                          options=("--threads", 1))
+    return made if made.exists() else min(work.glob(made.stem + "_*Pa.h5"))
 
 
-def call(*words):
-    answer = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    return answer.returncode, answer.stderr.strip()
-
-
-def packed(program, work, recipe, *settings):
-    file = work / ("_".join([recipe, *(each.split("=")[1] for each in settings)]) + ".h5")
-    if not file.exists():
-        code, errors = call(program, "pack", PROTOCOLS / f"{recipe}.toml", "-o", file, "--threads", 1,
-                            *(word for each in settings for word in ("--set", each)))
-        if code != 0:
-            raise SystemExit(f"thin: {recipe}: {errors[-300:]}")
-    return sorted(work.glob(file.stem + "_*Pa.h5"))[:1][0] if not file.exists() else file
-
-
-def run(program, work, specimen, **scene):
+def run(specimen, **scene):
     """The records, the last specimen's heights over the mean diameter, and what was said."""
     test, out = work / "test.toml", work / "R.h5"
     test.write_text(SHEAR.format(**scene))
-    code, errors = call(program, "run", test, "--specimen", specimen, "-o", out, "--force")
+    out.unlink(missing_ok=True)
+    done = harness.run(harness.program, "run", test, "--specimen", specimen, "-o", out, "--force", codes=None)
+    errors = done.stderr.strip()
     if not out.exists():
         return None, None, errors, errors
+    found = records(out, "strain", "stress_Pa", "cell_thin")
     with h5py.File(out) as file:
-        records = {name: file["records"][name][:] for name in ("strain", "stress_Pa", "cell_thin")}
         lattice, radius = file["specimen/cell/lattice_m"][:], file["specimen/grains/radius_m"][:]
-    inverse = np.linalg.inv(lattice)
-    dimension = 2 if np.ptp(records["stress_Pa"][:, 2, 2]) == 0 else 3
-    out.unlink()
-    return records, 1 / np.linalg.norm(inverse, axis=1)[:dimension] / (2 * radius.mean()), errors if code else "", errors
+    dimension = 2 if np.ptp(found["stress_Pa"][:, 2, 2]) == 0 else 3
+    heights = 1 / np.linalg.norm(np.linalg.inv(lattice), axis=1)[:dimension] / (2 * radius.mean())
+    return found, heights, errors if done.returncode else "", errors
 
 
-def simple_shear(program, work, recipes, at_rate):
+def simple_shear(recipes, at_rate):
     print(f"simple shear at dt {'> 0 to 1e4' if at_rate else '= 0 to 300'}: recipe, grains, records, thin, last heights/d, seconds")
     missed = 0
     for recipe in recipes:
@@ -173,10 +114,10 @@ def simple_shear(program, work, recipes, at_rate):
             number.append("target.void_ratio_tolerance=0.02")
         if recipe == "pack_regular" or (at_rate and recipe in WHOLE):
             number = []
-        specimen = packed(program, work, recipe, *number)
+        specimen = packed(recipe, *number)
         rate = "" if not at_rate else "rate_1_s = 5" if "qu" in recipe else "inertial_number = 0.3"
         begun = time.monotonic()
-        records, heights, errors, _ = run(program, work, specimen, mode="at_rate" if at_rate else "quasi_static", rate=rate,
+        records, heights, errors, _ = run(specimen, mode="at_rate" if at_rate else "quasi_static", rate=rate,
                                        kind="simple_shear", strain=1e4 if at_rate else 300, every=1 if at_rate else 0.1, more="")
         seconds = time.monotonic() - begun
         if records is None or errors:
@@ -191,18 +132,18 @@ def simple_shear(program, work, recipes, at_rate):
     return missed
 
 
-def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5):
-    """A table for judge(), and how many runs did not tell what they should."""
+def pure_shear(at_rate, recipe="pack_loose", number=400, seeds=5):
+    """A table for judge(), and whether runs did not report what they should."""
     head = (f"pure shear at constant volume, dt {'> 0' if at_rate else '= 0'}, {recipe}, {number} grains: Hencky strain; upright height "
             "over d; upright, oriented: records, thin, p, sin phi; p over that of oriented cells; differences over their standard errors")
     edges, found, heights, rows = np.linspace(0, 2, 11), {}, [], []
-    told = to_tell = 0
+    reported = to_report = 0
     for cell in ("upright", "oriented"):
         found[cell] = []
         for seed in range(1, seeds + 1):
             size = [f"pack.number={number}"] if number != 400 else []
-            specimen = packed(program, work, recipe, *size, f"pack.cell={cell}", f"pack.seed={seed}")
-            records, last, errors, said = run(program, work, specimen, mode="at_rate" if at_rate else "quasi_static",
+            specimen = packed(recipe, *size, f"pack.cell={cell}", f"pack.seed={seed}")
+            records, last, errors, said = run(specimen, mode="at_rate" if at_rate else "quasi_static",
                                         rate="inertial_number = 0.1" if at_rate else "", kind="compression",
                                         strain=1 - np.exp(-2), every=0.0025, more='lateral = "constant_volume"')
             if records is None or errors:
@@ -212,8 +153,8 @@ def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5)
             found[cell].append(records)
             if cell == "upright":
                 heights.append(last[1] / (1 - records["strain"][-1]))
-                told += ("the cell became" in said) + ("records are of a thin cell" in said)
-                to_tell += int(min(last) < 10) + int(records["cell_thin"].any())
+                reported += ("the cell became" in said) + ("records are of a thin cell" in said)
+                to_report += int(min(last) < 10) + int(records["cell_thin"].any())
     for low, high in zip(edges[:-1], edges[1:]):
         height = np.mean(heights) * np.exp(-(low + high) / 2)
         line, means = f"  {low:.1f} to {high:.1f}  {height:5.1f}", {}
@@ -232,36 +173,33 @@ def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5)
                 values.append((p.mean(), q.mean() / p.mean()))
             means[cell] = np.array(values)
             line += f"   {count:4} {thin:4}" + (" {:9.4g} {:6.3f}".format(*means[cell].mean(axis=0)) if values else 17 * " ")
+        compared = None
         if all(len(each) > 1 for each in means.values()):
             of_upright, of_oriented = means["upright"].mean(axis=0), means["oriented"].mean(axis=0)
             error = np.sqrt(sum(each.var(axis=0, ddof=1) / len(each) for each in means.values()))
             apart = (of_upright - of_oriented) / error
-            line += "   {:5.2f} {:5.1f} {:5.1f}".format(of_upright[0] / of_oriented[0], *apart)
-        rows.append(Row(line))
-    tail = f"  runs of upright cells that are told of as low, and as thin: {told} of {to_tell}"
-    return (head, seeds, rows, tail), told < to_tell
+            compared = [of_upright[0] / of_oriented[0], *apart]
+            line += "   {:5.2f} {:5.1f} {:5.1f}".format(*compared)
+        rows.append((line, f"{low:.1f} to {high:.1f}", float(height), compared))
+    tail = f"  runs of upright cells that are told of as low, and as thin: {reported} of {to_report}"
+    return (head, seeds, rows, tail), reported < to_report
 
 
 def main():
-    if sys.argv[1] == "--kept":
-        sys.exit("thin: bars missed" if sum(kept(path) for path in sys.argv[2:]) else 0)
-    program, work = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
-    recipes = [each for each in sys.argv[3:] if each in RECIPES] or RECIPES
-    parts = [each for each in sys.argv[3:] if each not in RECIPES] or ["rate", "rest", "pure"]
-    work.mkdir(parents=True, exist_ok=True)
+    recipes = [each for each in harness.words if each in RECIPES] or RECIPES
+    parts = [each for each in harness.words if each not in RECIPES] or ["rate", "rest", "pure"]
     missed = 0
     if "pure" in parts:
         for at_rate, recipe, sizes in ((True, "pack_loose", ((400, 5),)), (False, "pack_loose", ((400, 5),)),
                                        (False, "pack_medium", ((400, 20), (1600, 10))), (False, "pack_dense", ((400, 20), (1600, 10)))):
-            tables, untold = zip(*(pure_shear(program, work, at_rate, recipe, number, seeds) for number, seeds in sizes))
-            missed += judge(tables) + sum(untold)
-    if "rate" in parts:
-        missed += simple_shear(program, work, recipes, True)
-    if "rest" in parts:
-        missed += simple_shear(program, work, recipes, False)
-    if missed:
-        sys.exit("thin: bars missed")
+            tables, unreported = zip(*(pure_shear(at_rate, recipe, number, seeds) for number, seeds in sizes))
+            judge(tables)
+            missed += sum(unreported)
+    for part, at_rate in (("rate", True), ("rest", False)):
+        if part in parts:
+            missed += simple_shear(recipes, at_rate)
+    return missed
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

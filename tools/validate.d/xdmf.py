@@ -1,23 +1,18 @@
-#!/usr/bin/python3
 """ParaView reads what `rvelab export --format xdmf` writes: blocks, numbers of points and lines, arrays, outline.
 
 Needs python3-paraview and python3-numpy (Debian).
-
-    tools/validate.d/xdmf.py build/release/bin/rvelab
 """
 
-import json
-import pathlib
-import subprocess
 import sys
-import tempfile
 
 import numpy
 from paraview import servermanager
 from paraview.simple import Delete, UpdatePipeline, XDMFReader, Xdmf3ReaderT
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-YADE = pathlib.Path(__file__).resolve().parents[2] / "tests/data/yade"
+import harness
+from harness import answer, imported, rvelab, sets, work
+
 GRAIN_ARRAYS = {"radius_m": 1, "id": 1, "material": 1, "fluctuation_velocity_m_s": 3, "fluctuation_spin_rad_s": 3,
                 "stress_Pa": 9, "contacts": 1}
 CONTACT_ARRAYS = {"force_N": 3, "normal_force_N": 1, "overlap_m": 1, "sliding": 1}
@@ -76,29 +71,20 @@ def check(reader, grains, contacts, dimension, lattice, stress):
 
 
 def main():
-    program = sys.argv[1]
-    with tempfile.TemporaryDirectory() as folder:
-        for name, dimension in (("dense", 2), ("hertz", 3)):
-            specimen, test, out = (f"{folder}/{name}{suffix}" for suffix in (".h5", ".test.h5", ".xdmf"))
-            files = [str(YADE / f"{name}{suffix}") for suffix in (".particles.csv", ".contacts.csv", ".json")]
-            subprocess.run([program, "import", *files, "-o", specimen], check=True, stdout=subprocess.DEVNULL)
-            shear = ["--set", "stage.shear.to_strain=0.03", "--set", "stage.shear.record_every=0.03"]
-            subprocess.run([program, "run", "simple_shear", "--specimen", specimen, *shear, "-o", test], check=True,
-                           stdout=subprocess.DEVNULL)
-            subprocess.run([program, "export", test, "--format", "xdmf", "-o", out], check=True,
-                           stdout=subprocess.DEVNULL)
-            shown = json.loads(subprocess.run([program, "inspect", test, "--json"], check=True,
-                                              capture_output=True).stdout)
-            lattice = numpy.array(shown["rotation"]) @ numpy.array(shown["lattice_m"])
-            stress = numpy.array(shown["stress_Pa"])
-            for reader_of in (XDMFReader, Xdmf3ReaderT):
-                reader = reader_of(FileNames=[out]) if reader_of is XDMFReader else reader_of(FileName=[out])
-                UpdatePipeline(proxy=reader)
-                check(reader, shown["grains"], shown["contacts"], dimension, lattice, stress)
-                Delete(reader)
-                print(f"xdmf: {name}: {reader_of.__name__} found {shown['grains']} grains, {shown['contacts']} contacts, "
-                      "the cell, the stress")
+    for name, dimension in (("dense", 2), ("hertz", 3)):
+        test, out = work / f"{name}.test.h5", work / f"{name}.xdmf"
+        rvelab("run", "simple_shear", "--specimen", imported(name), "-o", test, "--force",
+               *sets("stage.shear.to_strain=0.03", "stage.shear.record_every=0.03"))
+        rvelab("export", test, "--format", "xdmf", "-o", out, "--force")
+        shown = answer("inspect", test)
+        lattice, stress = numpy.array(shown["rotation"]) @ numpy.array(shown["lattice_m"]), numpy.array(shown["stress_Pa"])
+        for kind, reader in (("XDMFReader", XDMFReader(FileNames=[str(out)])),
+                             ("Xdmf3ReaderT", Xdmf3ReaderT(FileName=[str(out)]))):
+            UpdatePipeline(proxy=reader)
+            check(reader, shown["grains"], shown["contacts"], dimension, lattice, stress)
+            print(f"xdmf: {name}: {kind} found {shown['grains']} grains, {shown['contacts']} contacts, the cell, the stress")
+            Delete(reader)
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -1,8 +1,8 @@
 """Error against processor time of one increment of 1e-4, rvelab beside YADE (tools/validate yade_increments).
 
-usage: yade_increments.py RVELAB PACKINGS WORK FIGURE [--rounds 5] [--state NAME]...
+usage: yade_increments.py RVELAB WORK RESULTS [--rounds 5] [--state NAME]...
 
-PACKINGS: folder of YADE's packings with contact history, dense and medium among them. Both programs make the same
+YADE's packings with contact history are those of ../shared/reference. Both programs make the same
 increments from the same states: at rest, and after 2 % of a drained biaxial test of YADE's, relaxed. The error is
 |sigma - sigma_r|/|sigma_r - sigma_0| (Frobenius) against each program's own resolved and relaxed answer.
 
@@ -14,21 +14,23 @@ within it too, so that no chance zero of an error wins.
 
 Both are timed on one core, stepping only, processor time, in rounds in turn; a ratio is one within a round. `restored`:
 from a copy of the state, YADE by O.run, as its coupling does and as the recorded points of YADE were taken. `going on`:
-with what only the first step or call after that does (YADE sorts all grains anew, rvelab scales the masses) done before,
+with what only the first step or call after that does (YADE sorts all grains again, rvelab scales the masses) done before,
 and YADE by O.step, without the thread that O.run starts: what the steps themselves cost.
 """
 import argparse
 import itertools
 import json
 import os
+import pathlib
 import statistics
-import subprocess
 
 import numpy as np
 
+import harness
 import yade_increments_report as report
+from harness import REFERENCE, program, results, work
 
-HERE = os.path.dirname(os.path.abspath(__file__))
+HERE = pathlib.Path(__file__).parent
 LENGTH = 1e-4
 INCREMENTS = {"biax": [[LENGTH / 2, 0], [0, -LENGTH]], "shear": [[0, LENGTH], [0, 0]]}
 STATES = {"dense": ("dense", 0), "dense_2pct": ("dense", 0.02), "medium": ("medium", 0),
@@ -85,50 +87,42 @@ def fineness(point):
     return point.get("steps") or point.get("fixed_substeps") or 1 / point["relative_tolerance"]
 
 
-class Programs:
-    def __init__(self, options):
-        self.rvelab = os.path.abspath(options.rvelab)
-        self.work = os.path.abspath(options.work)
-        self.core = str(max(os.sched_getaffinity(0)))
-        os.makedirs(self.work, exist_ok=True)
+def run(*command):
+    """On one core, in WORK."""
+    return harness.run("taskset", "-c", max(os.sched_getaffinity(0)), *command, cwd=work,
+                       env=dict(os.environ, OMP_NUM_THREADS="1")).stdout
 
-    def run(self, *command):
-        done = subprocess.run(["taskset", "-c", self.core, *command], capture_output=True, text=True, cwd=self.work,
-                              env=dict(os.environ, OMP_NUM_THREADS="1"), check=False)
-        if done.returncode != 0:
-            raise RuntimeError(f"{' '.join(command)}: {done.stdout[-1000:]}{done.stderr[-2000:]}")
-        return done.stdout
 
-    def scene(self, *arguments):
-        return self.run("yade", "-n", "-x", "-j1", os.path.join(HERE, "yade_scene.py"), *arguments)
+def scene(*arguments):
+    return run("yade", "-n", "-x", "-j1", HERE / "yade_scene.py", *arguments)
 
-    def job(self, content):
-        path = os.path.join(self.work, "job.json")
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump({"increments": list(INCREMENTS.values()), **content}, file)
-        return path
 
-    def yade(self, base, points, repeats, **more):
-        out = os.path.join(self.work, "yade.json")
-        self.scene("increments", base, self.job({"points": points, "repeats": repeats, **more}), out)
-        with open(out, encoding="utf-8") as file:
-            return json.load(file)
+def job(content):
+    (work / "job.json").write_text(json.dumps({"increments": list(INCREMENTS.values()), **content}))
+    return work / "job.json"
 
-    def own(self, name, settings, repeats, **more):
-        increments = os.path.join(os.path.dirname(self.rvelab), "rvelab-increments")
-        job = self.job({"settings": settings, "repeats": repeats, **more})
-        return json.loads(self.run(increments, f"{name}.h5", job))
 
-    def state(self, name, packings):
-        """A state of both programs. rvelab takes the slip and the arms of YADE, so that the answers can be compared."""
-        parent, strain = STATES[name]
-        base = os.path.join(os.path.abspath(packings), parent)
-        if strain:
-            parent, base = base, os.path.join(self.work, name)
-            self.scene("biaxial", parent, base, str(strain))
-        self.run(self.rvelab, "import", f"{base}.particles.csv", f"{base}.contacts.csv", f"{base}.json", "-o",
-                 f"{name}.h5", "--force", "--set", "contact.slip=full_radius_ratcheting")
-        return base
+def of_yade(base, points, repeats, **more):
+    scene("increments", base, job({"points": points, "repeats": repeats, **more}), work / "yade.json")
+    return json.loads((work / "yade.json").read_text())
+
+
+def of_rvelab(name, settings, repeats, **more):
+    return json.loads(run(program.with_name("rvelab-increments"), f"{name}.h5",
+                          job({"settings": settings, "repeats": repeats, **more})))
+
+
+def state_of(name):
+    """A state of both programs. rvelab takes the slip and the arms of YADE, so that the answers can be compared."""
+    parent, strain = STATES[name]
+    base = (REFERENCE / "yade/packings" / parent).resolve()
+    if strain:
+        parent, base = base, work / name
+        scene("biaxial", parent, base, strain)
+    run(program, "import", f"{base}.particles.csv", f"{base}.contacts.csv", f"{base}.json", "-o", f"{name}.h5",
+        "--force",
+        "--set", "contact.slip=full_radius_ratcheting")
+    return base
 
 
 def judged(found):
@@ -167,7 +161,7 @@ def choice(theirs, ours):
             for target in TARGETS]
 
 
-def timed(programs, base, name, chosen, rounds):
+def timed(base, name, chosen, rounds):
     """ms of each round: {(increment, target, number of the point): [(restored, going on)]}; number 0 is YADE's."""
     theirs, ours, order = [], [], []
     for mode, rows in enumerate(chosen):
@@ -182,7 +176,7 @@ def timed(programs, base, name, chosen, rounds):
     found = {key: [] for key in order}
     for _ in range(rounds):
         both = [itertools.chain(*(of["points"] for of in made))
-                for made in (programs.yade(base, theirs, 3), programs.own(name, ours, 51))]
+                for made in (of_yade(base, theirs, 3), of_rvelab(name, ours, 51))]
         for key in order:
             of = both[min(key[2], 1)]
             found[key].append(tuple(1e3 * statistics.median(next(of)["seconds"]) for _ in range(2)))
@@ -191,25 +185,22 @@ def timed(programs, base, name, chosen, rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    for name in ("rvelab", "packings", "work", "figure"):
-        parser.add_argument(name)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--state", action="append", choices=list(STATES))
-    options = parser.parse_args()
-    programs, results = Programs(options), {}
+    options, found = parser.parse_args(harness.words), {}
     report.print_head(options.rounds)
     for name in options.state or STATES:
-        base, at_rest = programs.state(name, options.packings), STATES[name][1] == 0
-        theirs = [judged(of) for of in programs.yade(base, yade_points(at_rest), 1, resolved=RESOLVED, couplings=5)]
-        ours = [judged(of) for of in programs.own(name, rvelab_points(at_rest), 3, resolved=RESOLVED, beside=101)]
-        results[name] = dict(zip(INCREMENTS, zip(theirs, ours)))
+        base, at_rest = state_of(name), STATES[name][1] == 0
+        theirs = [judged(of) for of in of_yade(base, yade_points(at_rest), 1, resolved=RESOLVED, couplings=5)]
+        ours = [judged(of) for of in of_rvelab(name, rvelab_points(at_rest), 3, resolved=RESOLVED, beside=101)]
+        found[name] = dict(zip(INCREMENTS, zip(theirs, ours)))
         chosen = [choice(their["points"], own["points"]) for their, own in zip(theirs, ours)]
-        report.print_state(name, list(INCREMENTS), chosen, timed(programs, base, name, chosen, options.rounds))
-    report.print_agreement(results)
-    report.print_prices(results)
+        report.print_state(name, list(INCREMENTS), chosen, timed(base, name, chosen, options.rounds))
+    report.print_agreement(found)
+    report.print_prices(found)
     report.verdicts(report.judged)
-    report.draw(results, TARGETS, options.figure)
+    report.draw(found, TARGETS, results / "yade_increments.png")
 
 
 if __name__ == "__main__":
-    main()
+    harness.main(main)

@@ -2,13 +2,9 @@
 import math
 import statistics
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-from verdict import tell_verdicts, verdict
+from harness import bars, pyplot, verdict
 
 COLUMNS = (("state", 11), ("mode", 5), ("error", 5), ("of", 11), ("steps and settings", 27), ("its error", 9),
            ("ms, restored", 24), ("ms, going on", 26), ("times, restored", 19), ("times, going on", 19))
@@ -61,6 +57,7 @@ def print_state(name, modes, chosen, times):
                     judged.append((f"{name}, {modes[mode]}, {head[2]}", head[3], words(point), statistics.median(ms for ms, _ in own)))
 
 
+@bars
 def verdicts(rows):
     """rows: (case, whose, steps, restored ms) of YADE and of the best settings. Where both make as many steps the ratio of their times is
     that of a step; the best settings need no more steps than YADE, so that this ratio is the least that is asked."""
@@ -81,7 +78,6 @@ def verdicts(rows):
         verdict(f"{case}: YADE's time over rvelab's, restored", f"{ratio:.1f}", f"{least:.0f} and more", ratio >= least,
                 each > 1.5 * step["settings"] and ", r " in words,
                 f"a start to a tolerance is measured on a copy: {1e3 * each:.0f} us for each of the {steps_of(words)} sub-steps that are counted")
-    tell_verdicts()
 
 
 def print_agreement(results):
@@ -128,6 +124,7 @@ def front(points):
 
 
 def draw(results, targets, path):
+    plt = pyplot()
     modes = list(next(iter(results.values())))
     figure, axes = plt.subplots(len(modes), len(results), figsize=(3.4 * len(results) + 0.6, 6), sharex=True, sharey=True,
                                 squeeze=False)

@@ -181,7 +181,7 @@ class Increments:
         self.start = O.cell.hSize
 
     def restored(self, job):
-        """The state from its copy. `warm`: with a first step made, which sorts all grains anew."""
+        """The state from its copy. `warm`: with a first step made, which sorts all grains again."""
         O.stringToScene(self.scene)
         O.dt = job["time_step"] * self.longest
         O.engines[-1].damping = job["damping"]

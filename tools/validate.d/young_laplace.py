@@ -88,22 +88,22 @@ def curves(value, theta, a, y, kind, step=0.08, beyond_rupture=6, most=400):
     """Gap, force and the other quantity along each path from contact to beyond rupture, by steps of equal length in
     (ln r0, arsinh(S V^(1/3)), l1, l2). value, theta, a: one each a bridge; y: in contact."""
     p = {"theta": theta, "a": a}
-    n, rows = len(theta), np.arange(len(theta))
+    n = len(theta)
     length = np.cbrt(value) if kind == "volume" else np.cos(theta) / value
     unknown = [0, 1, 2, 3] if kind == "volume" else [0, 2, 3]
-    def place(y):
+    def point_of(y):
         return np.stack([np.log(np.maximum(y[0], 1e-300)), np.arcsinh(y[1] * length), y[2] / length, y[3] / length])
     def residual_at(origin, tangent, h):
         def residual(y):
             g1, g2, s, v = bridge(y, p)
-            along = np.sum(tangent * (place(y) - origin), axis=0) - h
+            along = np.sum(tangent * (point_of(y) - origin), axis=0) - h
             return np.stack([g1, g2, v / value - 1, along] if kind == "volume" else [g1, g2, along])
         return residual
     tangent = np.zeros((4, n))
     tangent[0] = -1
     if kind == "volume":
         tangent[1] = -1
-    path, places, beyond = [y], [place(y)], np.zeros(n, int)
+    path, points, beyond = [y], [point_of(y)], np.zeros(n, int)
     gap, volume = [], []
     worst = np.zeros(n)
     _, _, s, v = bridge(y, p)
@@ -113,11 +113,11 @@ def curves(value, theta, a, y, kind, step=0.08, beyond_rupture=6, most=400):
         going = beyond < beyond_rupture
         guess = path[-1] + ((path[-1] - path[-2]) * (h / last_h) if len(path) > 1 else 0)
         guess[0] = np.where(guess[0] > 0, guess[0], path[-1][0] * 0.9)
-        z, bad = solve(np.where(going, guess, path[-1]), p, unknown, residual_at(places[-1], tangent, np.where(going, h, 0)), 10, 1e-13)
+        z, bad = solve(np.where(going, guess, path[-1]), p, unknown, residual_at(points[-1], tangent, np.where(going, h, 0)), 10, 1e-13)
         worst = np.where(going, np.maximum(worst, bad), worst)
         path.append(z)
-        places.append(place(z))
-        secant = places[-1] - places[-2]
+        points.append(point_of(z))
+        secant = points[-1] - points[-2]
         size = np.sqrt(np.sum(secant ** 2, axis=0))
         tangent = np.where(going & (size > 0), secant / np.maximum(size, 1e-300), tangent)
         _, _, s, v = bridge(z, p)
@@ -125,15 +125,15 @@ def curves(value, theta, a, y, kind, step=0.08, beyond_rupture=6, most=400):
         beyond += going & ((gap[-1] < gap[-2]) | (beyond > 0))
         last_h = h
         h = min(step, h * 1.1)
-    path, places = np.stack(path), np.stack(places)
-    chord = np.cumsum(np.concatenate([np.zeros((1, n)), np.sqrt(np.sum(np.diff(places, axis=0) ** 2, axis=1))]), axis=0)
+    path, points = np.stack(path), np.stack(points)
+    chord = np.cumsum(np.concatenate([np.zeros((1, n)), np.sqrt(np.sum(np.diff(points, axis=0) ** 2, axis=1))]), axis=0)
     force = path[:, 0] + path[:, 1] * path[:, 0] ** 2 / 2
     return {"chord": chord, "gap": np.stack(gap), "force": force, "other": path[:, 1] if kind == "volume" else np.stack(volume), "worst": worst}
 
 
 def sampled(c, t, order=8):
     """At t = sqrt(1 - gap/rupture): energy to rupture, force, other; and the rupture gap. One curve after the other."""
-    E, F, O, rupture, check = [], [], [], [], []
+    E, F, O, rupture = [], [], [], []
     gx, gw = np.polynomial.legendre.leggauss(order)
     for i in range(c["gap"].shape[1]):
         x, s = c["chord"][:, i], c["gap"][:, i]
