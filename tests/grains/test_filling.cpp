@@ -140,7 +140,7 @@ TEST_CASE("The distance to a surface is that to its faces, edges and corners", "
 }
 
 TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better the more there are", "[grains]") {
-  const Filling ball = filled(read_stl(as_text(ellipsoid(4, {1, 1, 1})), "ball.stl"), 1);
+  const Filling ball = filled(read_stl(as_text(ellipsoid(5, {1, 1, 1})), "ball.stl"), 1);
   REQUIRE(ball.spheres.size() == 1);
   CHECK(ball.spheres[0].radius == Approx(1).epsilon(5e-3));
   CHECK(ball.spheres[0].at.norm() < 5e-3);
