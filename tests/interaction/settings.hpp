@@ -35,7 +35,7 @@ inline Rve after_path_bit_by_bit(const Rve& start, const Matrix3& step, double d
     CHECK(same_bits(saved.apply(step, dt).stress, sigma));
     tried.attempt(-0.5 * step, dt);
     tried.revert();
-    tried.attempt(2 * step, dt);
+    tried.attempt(0.5 * step, dt);
     tried.exchange();
     tried.exchange();
     if (k % 2 == 0) tried.release();

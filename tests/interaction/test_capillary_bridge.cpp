@@ -166,7 +166,7 @@ TEST_CASE("moist packings: trials, restarts and released buffers bit by bit", "[
       start.apply(gradient(1e-4, 0, 0, 0), 0);
       REQUIRE(bridges(start) > start.size() / 2);
       for (const double dt : {0.0, 1e-3})
-        CHECK(bridges(after_path_bit_by_bit(start, gradient(1e-3, 2e-2, 5e-3, 1e-3), dt, 10)) > 0);
+        CHECK(bridges(after_path_bit_by_bit(start, gradient(1e-3, 2e-2, 5e-3, 1e-3), dt, 5)) > 0);
     }
 }
 
