@@ -1,7 +1,8 @@
 # Writes OUTPUT, the list of tests of a Catch2 EXECUTABLE for ctest: one entry per TEST_CASE of ROOM, labelled with the
-# room, its tags, and `quick` unless it is tagged [slow]. Catch2 2.13 lists no tags beside whole names, so the names
-# are asked for tag by tag. LIST_NAMES: the options that make this Catch2 print names only; RUN_OPTIONS: those that each
-# test is run with.
+# room, its tags, and `quick` unless it is tagged [slow]; those that are have a COST, in seconds: ctest begins with the
+# dearest, and keeps no times itself of tests whose names hold blanks. Catch2 2.13 lists no tags beside whole names, so
+# the names are asked for tag by tag. LIST_NAMES: the options that make this Catch2 print names only; RUN_OPTIONS: those
+# that each test is run with.
 cmake_minimum_required(VERSION 3.25)
 separate_arguments(LIST_NAMES)
 
@@ -55,14 +56,17 @@ foreach(test IN LISTS all)
       list(APPEND labels ${tag})
     endif()
   endforeach()
-  if(NOT test IN_LIST slow)
+  if(test IN_LIST slow)
+    set(cost 5)
+  else()
     list(APPEND labels quick)
+    set(cost 0)
   endif()
   list(REMOVE_DUPLICATES labels)
   # Commas and brackets mean something in a Catch2 test specification.
   string(REGEX REPLACE "([,${open}])" "\\\\\\1" pattern "${test}")
   string(APPEND script "add_test([==[${ROOM}: ${test}]==] [==[${EXECUTABLE}]==] [==[${pattern}]==] ${RUN_OPTIONS})\n"
-                       "set_tests_properties([==[${ROOM}: ${test}]==] PROPERTIES LABELS [==[${labels}]==])\n")
+                       "set_tests_properties([==[${ROOM}: ${test}]==] PROPERTIES LABELS [==[${labels}]==] COST ${cost})\n")
 endforeach()
 string(REPLACE "${semicolon}" ";" script "${script}")
 string(REPLACE "${open}" "[" script "${script}")

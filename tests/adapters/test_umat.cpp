@@ -1,7 +1,7 @@
 // umat_ as its hosts call it, which umat_hosts.c does; and what its file of materials may hold.
 #include <filesystem>
 
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -30,9 +30,7 @@ void expect_served(const std::string& host, bool spheres = false) {
   unsetenv("RVELAB_UMAT");
   const Workplace here;
   prepare(here, spheres);
-  const Outcome outcome = here.run(host + " .", hosts);
-  INFO(outcome.errors);
-  CHECK(outcome.code == 0);
+  here.succeeds(host + " .", hosts);
 }
 
 }  // namespace
@@ -100,9 +98,7 @@ TEST_CASE("umat_ without memory at any request answers with NaN, and the call ma
   unsetenv("RVELAB_UMAT");
   const Workplace here;
   prepare(here, false);
-  const Outcome outcome = here.run("LD_PRELOAD=" RVELAB_MEMORY_SHIM " " + hosts + " without_memory .", "env");
-  INFO(outcome.errors);
-  CHECK(outcome.code == 0);
+  here.succeeds("LD_PRELOAD=" RVELAB_MEMORY_SHIM " " + hosts + " without_memory .", "env");
 }
 #endif
 

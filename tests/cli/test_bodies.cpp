@@ -1,7 +1,5 @@
 // Clumps and ellipsoids as a user meets them: packed, tested, shown, and refused where files cannot hold them.
-#include <nlohmann/json.hpp>
-
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -12,21 +10,16 @@ namespace {
 /// cannot hold them.
 void check_files(const Workplace& here, const std::string& recipe, const char* told, const char* header,
                  const char* refused) {
-  const Outcome packed =
-      here.run("pack " + recipe + " -o S.h5 --set pack.number=40 --set target.unbalanced=1e-4 --json");
-  INFO(packed.errors);
-  REQUIRE(packed.code == 0);
-  const auto inspected = nlohmann::json::parse(here.run("inspect S.h5 --json").output);
+  here.succeeds("pack " + recipe + " -o S.h5 --set pack.number=40 --set target.unbalanced=1e-4 --json");
+  const auto inspected = here.json("inspect S.h5");
   INFO(inspected.dump());
   CHECK(inspected.dump().find(told) != std::string::npos);
-  const Outcome ran = here.run("run triaxial --specimen S.h5 -o R.h5 --set stage.compression.to_strain=0.001");
-  INFO(ran.errors);
-  CHECK(ran.code == 0);
-  REQUIRE(here.run("export S.h5 --format xdmf -o S.xdmf").code == 0);
-  REQUIRE(here.run("export S.h5 --format csv -o out").code == 0);
+  here.succeeds("run triaxial --specimen S.h5 -o R.h5 --set stage.compression.to_strain=0.001");
+  here.succeeds("export S.h5 --format xdmf -o S.xdmf");
+  here.succeeds("export S.h5 --format csv -o out");
   CHECK_THAT(bytes_of(here / "out.particles.csv"), Contains(header));
-  expect_mistake(here.run("export S.h5 --format lammps-data -o S.data"), refused);
-  expect_mistake(here.run("import out.particles.csv out.contacts.csv out.json -o again.h5"), refused);
+  here.refuses("export S.h5 --format lammps-data -o S.data", refused);
+  here.refuses("import out.particles.csv out.contacts.csv out.json -o again.h5", refused);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // rvelab calibrate as a soil laboratory reads it: scatter of specimens, what is missing and why, peaks that are none.
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <map>
+#include <regex>
 
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -10,10 +11,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 nlohmann::json calibrated(const Workplace& here, const std::string& arguments) {
-  const Outcome outcome = here.run("calibrate biaxial " + arguments + " --json");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  return nlohmann::json::parse(outcome.output);
+  return here.json("calibrate biaxial " + arguments);
 }
 
 }  // namespace
@@ -48,7 +46,7 @@ TEST_CASE("several specimens give mean, standard deviation and standard error of
   const auto all = calibrated(here, three + "--pressures 15e3,20e3 --every-pressure");
   CHECK(all["per_pressure"].size() == 6);
   CHECK(all["per_specimen"].size() == 3);
-  expect_mistake(here.run("calibrate biaxial " + three + "--pressures 15e3,20e3"), "--every-pressure");
+  here.refuses("calibrate biaxial " + three + "--pressures 15e3,20e3", "--every-pressure");
   CHECK_THAT(here.run("calibrate biaxial " + three + "--pressures 20e3").output,
              Contains("friction_angle_mean_deg") && Contains("friction_angle_standard_error_deg"));
 }
@@ -58,15 +56,19 @@ TEST_CASE("a figure that cannot be had is no number, and the reason stands besid
   here.import_packing("dense_p20");
   const std::string brief =
       "calibrate biaxial --specimen S.h5 --pressures 20e3 --set stage.compression.to_strain=0.003";
-  const Outcome shown = here.run(brief);
-  CHECK(shown.code == 0);
-  CHECK(shown.output.find("nan") == std::string::npos);
-  CHECK_THAT(shown.output, Contains("-  (needs records over 1 % of strain; a test ends at 0.3 %)") &&
-                               Contains("-  (needs tests at two pressures or more)") &&
-                               Contains("-  (is the mean from 12 to 15 % of strain; a test ends at 0.3 %)"));
-  const auto json = nlohmann::json::parse(here.run(brief + " --json").output);
+  const std::string shown = here.succeeds(brief);
+  CHECK(shown.find("nan") == std::string::npos);
+  const auto json = here.json(brief);
   CHECK(json["cohesion_Pa"].is_null());
-  CHECK(json["undefined"]["cohesion_Pa"] == "needs tests at two pressures or more");
+  const std::map<std::string, std::string> lacks{{"friction_angle_moving_mean_deg", "records over 1 % of strain"},
+                                                 {"cohesion_Pa", "two pressures"},
+                                                 {"large_strain_friction_angle_deg", "12 to 15 % of strain"}};
+  for (const auto& [name, reason] : lacks) {
+    const std::string said = json["undefined"][name];
+    CHECK_THAT(said, Contains(reason));
+    CHECK_THAT(shown, Contains(said));
+    CHECK(std::regex_search(shown, std::regex("\\n" + name + " +- ")));
+  }
   CHECK(json["undefined"].size() == 6);
 }
 
@@ -88,12 +90,10 @@ TEST_CASE("a specimen or a pressure that is given twice, and an empty list, are 
   here.import_packing("dense_p20");
   std::filesystem::copy_file(here / "S.h5", here / "T.h5");
   for (const std::string choice : {"--every-pressure", "--pressures 20e3"}) {
-    expect_mistake(here.run("calibrate biaxial --specimen S.h5 --specimen T.h5 " + choice),
-                   "T.h5 holds the same specimen as S.h5");
+    here.refuses("calibrate biaxial --specimen S.h5 --specimen T.h5 " + choice, "T.h5", "the same", "S.h5");
   }
-  expect_mistake(here.run("calibrate biaxial --specimen S.h5 --pressures 10e3,20e3,10e3"),
-                 "--pressures holds 10000 Pa twice");
-  expect_mistake(here.run("calibrate biaxial --specimen S.h5 --pressures ''"), "--pressures holds \"\"");
+  here.refuses("calibrate biaxial --specimen S.h5 --pressures 10e3,20e3,10e3", "--pressures holds 10000 Pa twice");
+  here.refuses("calibrate biaxial --specimen S.h5 --pressures ''", "--pressures holds \"\"");
 }
 
 TEST_CASE("the folder of a calibration is made, and told where it cannot be") {
@@ -103,10 +103,10 @@ TEST_CASE("the folder of a calibration is made, and told where it cannot be") {
       "calibrate biaxial --specimen S.h5 --pressures 20e3 --set stage.compression.to_strain=0.001";
   CHECK(here.run(brief + " -o a/b/c").code == 0);
   CHECK(std::filesystem::exists(here / "a/b/c/R_20000.h5"));
-  expect_mistake(here.run(brief + " -o S.h5"), "S.h5: the folder cannot be made");
-  expect_mistake(here.run(brief + " -o S.h5/deep"), "S.h5/deep: the folder cannot be made");
+  here.refuses(brief + " -o S.h5", "S.h5: the folder cannot be made");
+  here.refuses(brief + " -o S.h5/deep", "S.h5/deep: the folder cannot be made");
   // A mistake leaves no folder behind.
-  expect_mistake(here.run(brief + " -o none --set material.steel.friction=0.1"), "steel");
+  here.refuses(brief + " -o none --set material.steel.friction=0.1", "steel");
   CHECK(!std::filesystem::exists(here / "none"));
 }
 

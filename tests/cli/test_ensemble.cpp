@@ -1,7 +1,5 @@
 // Ensembles as a user runs them: several specimens by one command, stopped and resumed, two groups compared.
-#include <nlohmann/json.hpp>
-
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -20,10 +18,8 @@ Workplace& with_packings(Workplace& here) {
 TEST_CASE("An ensemble gives for each specimen what a run of it alone gives, and their mean and standard error") {
   Workplace place;
   const Workplace& here = with_packings(place);
-  const Outcome outcome = here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 S_c.h5 -o D") + brief);
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  CHECK_THAT(outcome.output, Contains("friction_angle_deg") && Contains("+-") && Contains("bearing_capacity_Nq"));
+  const std::string outcome = here.succeeds(std::string("run biaxial --specimen S_a.h5 S_b.h5 S_c.h5 -o D") + brief);
+  CHECK_THAT(outcome, Contains("friction_angle_deg") && Contains("+-") && Contains("bearing_capacity_Nq"));
   const auto summary = nlohmann::json::parse(bytes_of(here / "D/summary.json"));
   REQUIRE(summary["tests"].size() == 3);
   double sum = 0, squares = 0;
@@ -50,13 +46,11 @@ TEST_CASE("An ensemble that was stopped and resumed has the same summary, whatev
   Workplace place;
   const Workplace& here = with_packings(place);
   const std::string test = std::string("run biaxial --specimen 'S_*.h5' -o ");
-  REQUIRE(here.run(test + "whole --threads 1" + brief).code == 0);
+  here.succeeds(test + "whole --threads 1" + brief);
   // Killed on its way: a file is missing, another has a journal only.
   here.run(test + "cut --threads 2 --checkpoint-every 0.01" + brief + " & sleep 0.4; kill -9 $!");
-  expect_mistake(here.run(test + "whole" + brief), "--resume");
-  const Outcome resumed = here.run(test + "cut --threads 2 --resume" + brief);
-  INFO(resumed.errors);
-  REQUIRE(resumed.code == 0);
+  here.refuses(test + "whole" + brief, "--resume");
+  here.succeeds(test + "cut --threads 2 --resume" + brief);
   CHECK(bytes_of(here / "cut/summary.json") == bytes_of(here / "whole/summary.json"));
   CHECK(bytes_of(here / "cut/summary.csv") == bytes_of(here / "whole/summary.csv"));
 }
@@ -81,8 +75,8 @@ TEST_CASE("An ensemble refuses a specimen given twice, a pattern that fits nothi
   Workplace place;
   const Workplace& here = with_packings(place);
   std::filesystem::copy_file(here / "S_a.h5", here / "T.h5");
-  expect_mistake(here.run("run biaxial --specimen S_a.h5 T.h5"), "T.h5 holds the same specimen as S_a.h5");
-  expect_mistake(here.run("run biaxial --specimen 'X_*.h5'"), "X_*.h5: no file has such a name");
+  here.refuses("run biaxial --specimen S_a.h5 T.h5", "T.h5 holds the same specimen as S_a.h5");
+  here.refuses("run biaxial --specimen 'X_*.h5'", "X_*.h5: no file has such a name");
   const Outcome failed = here.run(std::string("run biaxial --specimen 'S_*.h5' --set solver.max_substeps=3") + brief);
   CHECK(failed.code == 1);
   CHECK_THAT(failed.errors, Contains("S_b.h5: ") && Contains("3 of 3 tests could not be carried out"));
@@ -91,13 +85,11 @@ TEST_CASE("An ensemble refuses a specimen given twice, a pattern that fits nothi
 TEST_CASE("A calibration keeps the summary of its specimens beside its records") {
   Workplace place;
   const Workplace& here = with_packings(place);
-  const Outcome outcome = here.run(
+  const std::string outcome = here.succeeds(
       "calibrate biaxial --specimen S_a.h5 S_b.h5 S_c.h5 --every-pressure --pressures 15e3,20e3 -o D "
       "--set stage.compression.to_strain=0.01");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
   std::size_t longest = 0;
-  std::istringstream lines(outcome.output);
+  std::istringstream lines(outcome);
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with("warning ")) longest = std::max(longest, line.size());
   CHECK(longest <= 130);

@@ -1,9 +1,8 @@
 // rvelab fit as a user runs it: a target, a measured curve, a sweep; stopped and resumed; mistakes.
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -31,11 +30,8 @@ TEST_CASE("A fit finds the stiffness of the grains that a modulus was measured w
   for (const auto& test : known["tests"]) modulus += test["E50_Pa"].get<double>() / 2;
   const std::string fit = std::string("fit biaxial --specimen 'S_*.h5' --tests 16 --target E50_Pa=") +
                           std::to_string(modulus) + stiffness + in_the_elastic_range;
-  const Outcome outcome = here.run(fit + "-o F");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  CHECK_THAT(outcome.output,
-             Contains("material.young_modulus_Pa") && Contains("95 % interval") && Contains("tests   16"));
+  const std::string outcome = here.succeeds(fit + "-o F");
+  CHECK_THAT(outcome, Contains("material.young_modulus_Pa") && Contains("95 % interval") && Contains("16"));
   const auto found = nlohmann::json::parse(bytes_of(here / "F/fit.json"));
   CHECK(found["parameters"][0]["low_95"].get<double>() <= 8e8);
   CHECK(found["parameters"][0]["high_95"].get<double>() >= 8e8);
@@ -47,10 +43,10 @@ TEST_CASE("A fit finds the stiffness of the grains that a modulus was measured w
   std::filesystem::copy(here / "F", here / "G", std::filesystem::copy_options::recursive);
   for (const char* name : {"G/fit.json", "G/fit.csv", "G/tests/0003.json", "G/tests/0016.json"})
     std::filesystem::remove(here / name);
-  REQUIRE(here.run(fit + "-o G --resume --threads 2").code == 0);
+  here.succeeds(fit + "-o G --resume --threads 2");
   CHECK(bytes_of(here / "G/fit.json") == bytes_of(here / "F/fit.json"));
-  expect_mistake(here.run(fit + "-o F"), "--resume");
-  expect_mistake(here.run(fit + "-o F --resume --set material.friction=0.3"), "is of another fit");
+  here.refuses(fit + "-o F", "--resume");
+  here.refuses(fit + "-o F --resume --set material.friction=0.3", "is of another fit");
 }
 
 TEST_CASE("A measured curve is fitted, and the fit over the data is written and drawn") {
@@ -58,10 +54,8 @@ TEST_CASE("A measured curve is fitted, and the fit over the data is written and 
   const Workplace& here = with_two_packings(place);
   here.write("data.csv",
              "axial_strain_percent,deviator_kPa,deviator_kPa_error\n0.05,4,1\n0.1,7,1\n0.15,9,1\n0.2,11,1\n");
-  const Outcome outcome = here.run(std::string("fit biaxial --specimen 'S_*.h5' --tests 10 --curve data.csv -o F") +
-                                   stiffness + in_the_elastic_range);
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
+  here.succeeds(std::string("fit biaxial --specimen 'S_*.h5' --tests 10 --curve data.csv -o F") + stiffness +
+                in_the_elastic_range);
   const std::string csv = bytes_of(here / "F/curves.csv");
   CHECK_THAT(csv, Contains("curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95,test\n") &&
                       Contains("1,0,deviator,strain,5e-04,4000,1000,"));
@@ -71,21 +65,17 @@ TEST_CASE("A measured curve is fitted, and the fit over the data is written and 
 TEST_CASE("A sweep gives every combination on every specimen, as a table and as CSV") {
   Workplace place;
   const Workplace& here = with_two_packings(place);
-  const Outcome outcome = here.run(std::string("fit biaxial --specimen 'S_*.h5' --vary material.friction=0.2:0.6:2 "
-                                               "--vary material.young_modulus_Pa=4e8:8e8:2 -o F") +
-                                   in_the_elastic_range);
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
+  here.succeeds(std::string("fit biaxial --specimen 'S_*.h5' --vary material.friction=0.2:0.6:2 "
+                            "--vary material.young_modulus_Pa=4e8:8e8:2 -o F") +
+                in_the_elastic_range);
   const std::string csv = bytes_of(here / "F/sweep.csv");
   CHECK_THAT(csv, Contains("material.friction,material.young_modulus_Pa,friction_angle_deg,") &&
                       Contains("\n0.2,8e+08,") && Contains("\n0.6,4e+08,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
   // One point of it is what a run gives.
-  const auto run = nlohmann::json::parse(
-      here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --set material.friction=0.6 --json "
-                           "--set material.young_modulus_Pa=4e8") +
-               in_the_elastic_range)
-          .output);
+  const auto run = here.json(std::string("run biaxial --specimen S_a.h5 S_b.h5 --set material.friction=0.6 "
+                                         "--set material.young_modulus_Pa=4e8") +
+                             in_the_elastic_range);
   const double mean =
       (run["tests"][0]["friction_angle_deg"].get<double>() + run["tests"][1]["friction_angle_deg"].get<double>()) / 2;
   std::istringstream row(csv.substr(csv.find("\n0.6,4e+08,") + 11));
@@ -96,13 +86,11 @@ TEST_CASE("A sweep gives every combination on every specimen, as a table and as 
 
 TEST_CASE("A recipe packs a specimen for each test, and its keys may be varied") {
   const Workplace here;
-  const Outcome outcome = here.run(
+  const std::string outcome = here.succeeds(
       "fit biaxial --recipe pack_dense --count 2 --set pack.number=30 --set target.void_ratio_tolerance=0.02 "
       "--set stage.compression.to_strain=0.001 --set test.pressure_Pa=100e3 --vary target.void_ratio=0.2:0.24:2 "
       "--json");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  const auto sweep = nlohmann::json::parse(outcome.output)["sweep"];
+  const auto sweep = nlohmann::json::parse(outcome)["sweep"];
   REQUIRE(sweep.size() == 2);
   CHECK(sweep[0]["start_void_ratio"]["mean"].get<double>() == Approx(0.2).margin(0.025));
   CHECK(sweep[1]["start_void_ratio"]["mean"].get<double>() == Approx(0.24).margin(0.025));
@@ -110,12 +98,9 @@ TEST_CASE("A recipe packs a specimen for each test, and its keys may be varied")
 
 TEST_CASE("The scatter of the friction angle falls with the root of the number of grains", "[slow]") {
   const Workplace here;
-  const Outcome outcome = here.run(
+  const auto sweep = here.json(
       "fit biaxial --recipe pack_dense --count 8 --vary pack.number=30:480:2 --set stage.compression.to_strain=0.05 "
-      "--set target.void_ratio_tolerance=0.003 --json");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  const auto sweep = nlohmann::json::parse(outcome.output)["sweep"];
+      "--set target.void_ratio_tolerance=0.003")["sweep"];
   const auto error = [&](int point) { return sweep[point]["friction_angle_deg"]["standard_error"].get<double>(); };
   CHECK(sweep[1]["friction_angle_deg"]["n"] == 8);
   // Sixteen times the grains: a quarter. Ratios of two variances of eight numbers scatter as F with 7 and 7 degrees of
@@ -151,15 +136,14 @@ TEST_CASE("One set of parameters is fitted to some tests of a soil, and predicts
   std::map<std::string, double> modulus;
   for (const std::string pressure : {"50e3", "100e3"}) {
     const std::string name = "S_" + pressure;
-    REQUIRE(here.run("pack pack_dense --count 2 --set pack.number=30 --set target.void_ratio_tolerance=0.02 "
-                     "--set target.pressure_Pa=" +
-                     pressure + " -o " + name + ".h5")
-                .code == 0);
-    const auto known = nlohmann::json::parse(here.run("run biaxial --specimen '" + name +
-                                                      "_*.h5' --json --set stage.compression.to_strain=0.002 "
-                                                      "--set test.pressure_Pa=" +
-                                                      pressure)
-                                                 .output);
+    here.succeeds(
+        "pack pack_dense --count 2 --set pack.number=30 --set target.void_ratio_tolerance=0.02 "
+        "--set target.pressure_Pa=" +
+        pressure + " -o " + name + ".h5");
+    const auto known = here.json("run biaxial --specimen '" + name +
+                                 "_*.h5' --set stage.compression.to_strain=0.002 "
+                                 "--set test.pressure_Pa=" +
+                                 pressure);
     for (const auto& test : known["tests"]) modulus[pressure] += test["E50_Pa"].get<double>() / 2;
   }
   here.write("soil.toml", soil_file(modulus["50e3"], modulus["100e3"]));
@@ -186,47 +170,45 @@ TEST_CASE("One set of parameters is fitted to some tests of a soil, and predicts
   // After a kill what is missing is made again, predictions too, and nothing else changes.
   for (const char* name : {"F/fit.json", "F/tests/0003.json", "F/predictions/0002.json"})
     std::filesystem::remove(here / name);
-  REQUIRE(here.run("fit soil.toml --tests 24 -o F --resume --threads 2").code == 0);
+  here.succeeds("fit soil.toml --tests 24 -o F --resume --threads 2");
   CHECK(nlohmann::json::parse(bytes_of(here / "F/fit.json")) == found);
   const Outcome other = here.run("fit soil.toml --tests 24 -o F --resume --set pack.seed=2");
   CHECK(other.code == 2);
   CHECK_THAT(other.errors, Contains("is of another fit"));
-  expect_mistake(here.run("fit soil.toml --predict lowe"), "the nearest is low");
-  expect_mistake(here.run("fit soil.toml --predict low"), "names every test");
-  expect_mistake(here.run("fit soil.toml --target E50_Pa=3e7"), "targets of a [[measured]]");
+  here.refuses("fit soil.toml --predict lowe", "nearest", "low");
+  here.refuses("fit soil.toml --predict low", "names every test");
+  here.refuses("fit soil.toml --target E50_Pa=3e7", "targets of a [[measured]]");
 }
 
 TEST_CASE("Mistakes of a fit are told before any test") {
   Workplace place;
   const Workplace& here = with_two_packings(place);
   const std::string fit = "fit biaxial --specimen S_a.h5 ";
-  expect_mistake(here.run(fit + "--target friction_angle_deg=30"), "nothing is varied");
-  expect_mistake(here.run(fit + "--vary material.friction=0.1:1"), "no number of values");
-  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary material.friction=0.1:1:5"), "without a target");
-  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary material.frction=0.1:1"),
-                 "the nearest known key is material.friction");
-  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary target.void_ratio=0.2:0.3"), "--recipe");
-  expect_mistake(here.run("fit biaxial --vary material.friction=0.1:1 --target friction_angle_deg=30"),
-                 "no specimen is given");
-  expect_mistake(here.run(fit + "--recipe pack_dense --vary material.friction=0.1:1 --target friction_angle_deg=30"),
-                 "--recipe and --specimen are both given");
-  expect_mistake(here.run("fit biaxial --recipe pack_dense --same-specimens --vary material.friction=0.1:1 --target "
-                          "friction_angle_deg=30"),
-                 "--same-specimens is given with --recipe");
-  expect_mistake(here.run(fit + "--same-specimens --vary material.friction=0.1:1:5"), "without a target");
-  expect_mistake(here.run(fit + "--target angle=30 --vary material.friction=0.1:1"), "the nearest is");
-  expect_mistake(here.run(fit + "--predict A --vary material.friction=0.1:1"), "with a protocol");
-  expect_mistake(here.run(fit + "--column q_over_p --target friction_angle_deg=30 --vary material.friction=0.1:1"),
-                 "--column is given without --curve");
+  here.refuses(fit + "--target friction_angle_deg=30", "nothing is varied");
+  here.refuses(fit + "--vary material.friction=0.1:1", "no number of values");
+  here.refuses(fit + "--target friction_angle_deg=30 --vary material.friction=0.1:1:5", "without a target");
+  here.refuses(fit + "--target friction_angle_deg=30 --vary material.frction=0.1:1", "nearest", "material.friction");
+  here.refuses(fit + "--target friction_angle_deg=30 --vary target.void_ratio=0.2:0.3", "--recipe");
+  here.refuses("fit biaxial --vary material.friction=0.1:1 --target friction_angle_deg=30", "no specimen is given");
+  here.refuses(fit + "--recipe pack_dense --vary material.friction=0.1:1 --target friction_angle_deg=30",
+               "--recipe and --specimen are both given");
+  here.refuses(
+      "fit biaxial --recipe pack_dense --same-specimens --vary material.friction=0.1:1 --target "
+      "friction_angle_deg=30",
+      "--same-specimens is given with --recipe");
+  here.refuses(fit + "--same-specimens --vary material.friction=0.1:1:5", "without a target");
+  here.refuses(fit + "--target angle=30 --vary material.friction=0.1:1", "the nearest is");
+  here.refuses(fit + "--predict A --vary material.friction=0.1:1", "with a protocol");
+  here.refuses(fit + "--column q_over_p --target friction_angle_deg=30 --vary material.friction=0.1:1",
+               "--column is given without --curve");
   // A curve that no test of the protocol reaches, before a specimen is packed.
   here.write("far.csv", "axial_strain,q_over_p\n0.001,0.2\n0.02,0.5\n");
   const std::string far = " --recipe pack_dense --vary material.friction=0.1:1 --curve far.csv --set ";
-  expect_mistake(here.run("fit biaxial --set pack.number=1000000 --set stage.compression.to_strain=0.012" + far +
-                          "test.pressure_Pa=2e4"),
-                 "far.csv: the curve reaches a strain of 0.02, 0.008 beyond the end of the test, "
-                 "stage.compression.to_strain = 0.012");
+  here.refuses(
+      "fit biaxial --set pack.number=1000000 --set stage.compression.to_strain=0.012" + far + "test.pressure_Pa=2e4",
+      "far.csv", "0.02", "0.008", "stage.compression.to_strain = 0.012");
   here.write("far.csv", "axial_stress_kPa,axial_strain\n50,0\n100,0.03\n");
-  expect_mistake(here.run("fit oedometer" + far + "test.pressure_Pa=5e4"), "stage.large.to_strain");
-  expect_mistake(here.run("fit oedometer" + far + "stage.large.to_strain=0.04"), "begins at a stress in Pa of 50000");
-  expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
+  here.refuses("fit oedometer" + far + "test.pressure_Pa=5e4", "stage.large.to_strain");
+  here.refuses("fit oedometer" + far + "stage.large.to_strain=0.04", "begins at a stress in Pa of 50000");
+  here.refuses(fit + "--curve none.csv --vary material.friction=0.1:1", "none.csv: no such file");
 }

@@ -1,6 +1,6 @@
 // rvelab import as a user meets it: which timestep, which dimension. What the files hold is tested in tests/io.
-#include "tests/cli/program.hpp"
 #include "tests/io/four_spheres.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -24,10 +24,10 @@ TEST_CASE("import reads the timestep and the dimension that are asked for, and t
   const Outcome first = here.run("import a.dump --material m.toml --timestep 5 -o S.h5 --force");
   CHECK(first.code == 0);
   CHECK(first.errors.empty());
-  expect_mistake(here.run("import a.dump --material m.toml --timestep 7 -o S.h5 --force"),
-                 "a.dump: has no timestep 7; allowed: 5, 10");
-  expect_mistake(here.run("import a.dump --material m.toml --dimension 4 -o S.h5 --force"), "--dimension");
+  here.refuses("import a.dump --material m.toml --timestep 7 -o S.h5 --force",
+               "a.dump: has no timestep 7; allowed: 5, 10");
+  here.refuses("import a.dump --material m.toml --dimension 4 -o S.h5 --force", "--dimension");
   const std::string whole = frame_of({}, 5) + frame_of(layer, 10);
   write_bytes(here / "cut.dump", whole.substr(0, whole.size() - 3));
-  expect_mistake(here.run("import cut.dump --material m.toml -o T.h5"), "--timestep 5 reads it");
+  here.refuses("import cut.dump --material m.toml -o T.h5", "--timestep 5 reads it");
 }

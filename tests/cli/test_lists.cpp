@@ -1,17 +1,14 @@
 // rvelab keys and rvelab protocols, and protocols found by their names.
-#include <nlohmann/json.hpp>
-
 #include "rvelab/protocol/protocol.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 TEST_CASE("keys lists every key with unit, type, default, range and meaning") {
   const Workplace here;
-  const Outcome outcome = here.run("keys --json");
-  REQUIRE(outcome.code == 0);
-  const auto list = nlohmann::json::parse(outcome.output)["keys"];
+  const auto list = here.json("keys")["keys"];
   REQUIRE(list.size() == rvelab::protocol::all_keys().size());
   for (const auto& key : list) {
     CAPTURE(key.dump());
@@ -27,16 +24,17 @@ TEST_CASE("keys lists every key with unit, type, default, range and meaning") {
 TEST_CASE("keys takes a part of a key, whatever its case, and says when there is none") {
   const Workplace here;
   const std::string text = here.run("keys PRESSURE").output;
-  CHECK_THAT(text, Contains("test.pressure_Pa  (number in Pa: 0 to 1e+15; usual 1000 to 1e+09 Pa; no default)\n    ") &&
-                       Contains("stage.isotropic.pressure_Pa") && Contains("default (test.pressure_Pa)"));
+  CHECK_THAT(text, StartsWith("test.pressure_Pa ") && Contains("0 to 1e+15") && Contains("1e+09 Pa") &&
+                       Contains("no default") && Contains("stage.isotropic.pressure_Pa") &&
+                       Contains("default (test.pressure_Pa)"));
   CHECK(text.find("friction") == std::string::npos);
-  CHECK(nlohmann::json::parse(here.run("keys stage.probe --json").output)["keys"].size() == 3);
-  expect_mistake(here.run("keys contact.slop"), "the nearest known key is contact.slip");
+  CHECK(here.json("keys stage.probe")["keys"].size() == 3);
+  here.refuses("keys contact.slop", "nearest", "contact.slip");
 }
 
 TEST_CASE("protocols lists the installed ones with what they are, and prints one as it is") {
   const Workplace here;
-  const auto list = nlohmann::json::parse(here.run("protocols --json").output);
+  const auto list = here.json("protocols");
   std::size_t sources = 0;
   for (const char* folder : {RVELAB_SOURCE_DIR "/protocols", RVELAB_SOURCE_DIR "/protocols/soils"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -57,21 +55,14 @@ TEST_CASE("a name without separator and .toml is an installed protocol, anything
   const Workplace here;
   here.import_packing("dense_p20");
   const std::string short_test = " --specimen S.h5 --set stage.compression.to_strain=0.001 --json";
-  const Outcome by_name = here.run("run biaxial" + short_test);
-  INFO(by_name.errors);
-  REQUIRE(by_name.code == 0);
-  const Outcome by_path = here.run("run " RVELAB_SOURCE_DIR "/protocols/biaxial.toml" + short_test);
-  REQUIRE(by_path.code == 0);
-  CHECK(nlohmann::json::parse(by_name.output)["records"] == nlohmann::json::parse(by_path.output)["records"]);
-  const Outcome calibration = here.run("calibrate biaxial --pressures 15e3,20e3" + short_test);
-  INFO(calibration.errors);
-  CHECK(calibration.code == 0);
+  const std::string by_name = here.succeeds("run biaxial" + short_test);
+  const std::string by_path = here.succeeds("run " RVELAB_SOURCE_DIR "/protocols/biaxial.toml" + short_test);
+  CHECK(nlohmann::json::parse(by_name)["records"] == nlohmann::json::parse(by_path)["records"]);
+  here.succeeds("calibrate biaxial --pressures 15e3,20e3" + short_test);
 
-  expect_mistake(here.run("run biaxail --specimen S.h5"),
-                 "no protocol \"biaxail\" is installed; the nearest is biaxial; allowed: adhesive_shear, biaxial, "
-                 "biaxial_cemented, biaxial_extension, ");
-  expect_mistake(here.run("run biaxial.toml --specimen S.h5"), "biaxial.toml: no such file");
-  expect_mistake(here.run("run ./biaxial --specimen S.h5"), "./biaxial: no such file");
+  here.refuses("run biaxail --specimen S.h5", "\"biaxail\"", "nearest is biaxial", "biaxial_extension");
+  here.refuses("run biaxial.toml --specimen S.h5", "biaxial.toml: no such file");
+  here.refuses("run ./biaxial --specimen S.h5", "./biaxial: no such file");
 }
 
 TEST_CASE("the program finds its protocols from where it is, and says when they are not there") {
@@ -80,14 +71,12 @@ TEST_CASE("the program finds its protocols from where it is, and says when they 
   fs::create_directories(here / "moved/bin");
   fs::copy_file(RVELAB_PROGRAM, here / "moved/bin/rvelab");
   const std::string moved = here / "moved/bin/rvelab";
-  expect_mistake(here.run("run biaxial", moved), "no protocol \"biaxial\" is installed; allowed: none in ");
+  expect_mistake(here.run("run biaxial", moved), "\"biaxial\"", "none");
   for (const char* command : {"protocols", "protocols --json", "protocols biaxial"}) {
     CAPTURE(command);
     const Outcome none = here.run(command, moved);
-    CHECK(none.code == 1);
+    expect_one_line(none, 1, "moved/share/rvelab/protocols: no protocols");
     CHECK(none.output.empty());
-    CHECK(std::count(none.errors.begin(), none.errors.end(), '\n') == 1);
-    CHECK_THAT(none.errors, Contains("moved/share/rvelab/protocols: no protocols are installed there"));
   }
   fs::create_directories(here / "moved/share/rvelab/protocols");
   fs::copy_file(RVELAB_SOURCE_DIR "/protocols/probe.toml", here / "moved/share/rvelab/protocols/mine.toml");
@@ -117,6 +106,5 @@ TEST_CASE("where /proc is not mounted the program finds its protocols, by whatev
   fs::create_directories(here / "moved/bin");
   fs::copy_file(RVELAB_PROGRAM, here / "moved/bin/rvelab");
   const Outcome none = called(shim + "moved/bin/rvelab", "protocols");
-  CHECK(none.code == 1);
-  CHECK_THAT(none.errors, Contains("moved/share/rvelab/protocols: no protocols are installed there"));
+  expect_one_line(none, 1, "moved/share/rvelab/protocols: no protocols");
 }

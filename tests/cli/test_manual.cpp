@@ -1,7 +1,7 @@
 // The manual page and the completion, which are made of the program's own help.
 #include <sstream>
 
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -13,10 +13,8 @@ std::string offered(const Workplace& here, const std::string& words, int place) 
   here.write("ask.sh",
              "PATH=$(dirname '" RVELAB_PROGRAM "'):$PATH\nsource '" RVELAB_MANUAL "/rvelab.bash'\nCOMP_WORDS=(" +
                  words + ") COMP_CWORD=" + std::to_string(place) + "\n_rvelab\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
-  const Outcome outcome = here.run("ask.sh", "/bin/bash");
-  INFO(outcome.errors);
-  CHECK(outcome.code == 0);
-  return outcome.output;
+  const std::string outcome = here.succeeds("ask.sh", "/bin/bash");
+  return outcome;
 }
 
 }  // namespace

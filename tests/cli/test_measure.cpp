@@ -1,10 +1,9 @@
 // rvelab measure, and stress, force and fabric along tests.
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -18,9 +17,7 @@ const std::string quantities =
 
 /// Records of a test that is run with the quantities above.
 std::vector<records::Record> records_of(const Workplace& here, const std::string& test) {
-  const Outcome outcome = here.run("run " + test + " --specimen S.h5 -o R.h5" + quantities);
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
+  here.succeeds("run " + test + " --specimen S.h5 -o R.h5" + quantities);
   return io::read_recorded_test(here / "R.h5").result.records;
 }
 
@@ -45,19 +42,18 @@ void expect_relation(const std::vector<records::Record>& records, int dimension)
 TEST_CASE("measure prints anisotropies and both networks of a specimen and of the end of a test") {
   const Workplace here;
   here.import_packing("dense_p20");
-  const Outcome text = here.run("measure S.h5");
-  REQUIRE(text.code == 0);
-  CHECK_THAT(text.output, Contains("\nq_over_p_predicted ") && Contains("\nstrong_deviator_share "));
-  const auto json = nlohmann::json::parse(here.run("measure S.h5 --json").output);
+  const std::string text = here.succeeds("measure S.h5");
+  CHECK_THAT(text, Contains("\nq_over_p_predicted ") && Contains("\nstrong_deviator_share "));
+  const auto json = here.json("measure S.h5");
   CHECK(json.at("strong_contacts").get<double>() + json.at("weak_contacts").get<double>() == Approx(1));
   CHECK(json.at("normals_tensor").size() == 3);
   const auto records = records_of(here, "biaxial --set stage.compression.to_strain=0.003");
-  const auto end = nlohmann::json::parse(here.run("measure R.h5 --json").output);
+  const auto end = here.json("measure R.h5");
   CHECK(end.at("a_n").get<double>() == Approx(records.back().a_n).epsilon(1e-6));
   CHECK(end.at("q_over_p_predicted").get<double>() == Approx(records.back().stress_force_fabric).epsilon(1e-6));
   CHECK(end.at("strong_deviator_share").get<double>() == Approx(records.back().strong_deviator).epsilon(1e-6));
   CHECK(end.at("fabric_angle_deg").get<double>() == Approx(records.back().fabric_angle_deg).epsilon(1e-6));
-  expect_mistake(here.run("measure"), "file");
+  here.refuses("measure", "file");
 }
 
 TEST_CASE("discs in a biaxial test: force and fabric make the stress, strong contacts bear the deviator", "[slow]") {
@@ -76,7 +72,7 @@ TEST_CASE("discs in a biaxial test: force and fabric make the stress, strong con
   CHECK(end.a_t > 0);
   CHECK(end.fabric_angle_deg < 10);
   CHECK(std::abs(end.a_lt) < 1e-9);
-  const auto state = nlohmann::json::parse(here.run("measure R.h5 --json").output);
+  const auto state = here.json("measure R.h5");
   // Of contacts that slide, most are weak.
   CHECK(state.at("weak_sliding").get<double>() > 2 * state.at("strong_sliding").get<double>());
   CHECK(state.at("strong_anisotropy").get<double>() > 3 * std::abs(state.at("weak_anisotropy").get<double>()));
@@ -84,9 +80,9 @@ TEST_CASE("discs in a biaxial test: force and fabric make the stress, strong con
 
 TEST_CASE("ellipses in a biaxial test: force and fabric make the stress", "[slow]") {
   const Workplace here;
-  REQUIRE(here.run("pack pack_dense --set pack.shape=ellipse --set grains.smallest_aspect_ratio=0.5 --set "
-                   "grains.largest_aspect_ratio=0.8 -o S.h5")
-              .code == 0);
+  here.succeeds(
+      "pack pack_dense --set pack.shape=ellipse --set grains.smallest_aspect_ratio=0.5 --set "
+      "grains.largest_aspect_ratio=0.8 -o S.h5");
   const auto records = records_of(here, "biaxial --set stage.compression.to_strain=0.05");
   expect_relation(records, 2);
   CHECK(std::abs(records.back().a_lt) > 1e-6);  // branches across the normals
@@ -101,8 +97,8 @@ TEST_CASE("spheres in a triaxial test: force and fabric make the stress", "[slow
 TEST_CASE("measure gives modulus and damping of each loop of a cyclic test, and no instability") {
   const Workplace here;
   here.import_packing("dense_p20");
-  REQUIRE(here.run("run cyclic_shear --specimen S.h5 -o C.h5 --set stage.cycles.cycles=3").code == 0);
-  const auto json = nlohmann::json::parse(here.run("measure C.h5 --json").output);
+  here.succeeds("run cyclic_shear --specimen S.h5 -o C.h5 --set stage.cycles.cycles=3");
+  const auto json = here.json("measure C.h5");
   CHECK(!json.contains("unstable_from_strain"));
   REQUIRE(json.at("loops").size() == 2);
   for (const auto& loop : json.at("loops")) {
@@ -122,7 +118,7 @@ TEST_CASE("a dense biaxial test turns unstable at its peak; bands by Roscoe, Art
   here.import_packing("dense_p20");
   const Outcome run = here.run("run biaxial --specimen S.h5 -o R.h5 --json");
   REQUIRE(run.code == 0);
-  const auto json = nlohmann::json::parse(here.run("measure R.h5 --json").output);
+  const auto json = here.json("measure R.h5");
   const double peak = nlohmann::json::parse(run.output).at("peak_strain").get<double>();
   CHECK(json.at("unstable_from_strain").get<double>() < peak + 0.005);
   CHECK(json.at("second_order_work_least").get<double>() < 0);
@@ -133,10 +129,10 @@ TEST_CASE("a dense biaxial test turns unstable at its peak; bands by Roscoe, Art
   CHECK(roscoe > 45);  // dense grains dilate
   CHECK(coulomb > roscoe);
   // A sheared state is weaker in its weakest band than its contacts would be, were all of them stuck.
-  const auto probe = nlohmann::json::parse(here.run("probe R.h5 --bands --method dynamic --size 1e-5 --json").output);
+  const auto probe = here.json("probe R.h5 --bands --method dynamic --size 1e-5");
   CHECK(probe.at("acoustic_ratio").get<double>() < 0.95);
   CHECK(probe.at("acoustic_ratio").get<double>() <= probe.at("acoustic_mean_ratio").get<double>() + 0.05);
-  const auto elastic = nlohmann::json::parse(here.run("probe R.h5 --bands --method linear --json").output);
+  const auto elastic = here.json("probe R.h5 --bands --method linear");
   CHECK(elastic.at("acoustic_ratio").get<double>() == 1);
 }
 
@@ -149,7 +145,7 @@ TEST_CASE("at its peak a biaxial test takes no more second-order work, and a ban
     here.run(
         "run biaxial --specimen S.h5 -o R.h5 --force --set test.pressure_Pa=1e5 --set stage.compression.to_strain=" +
         std::to_string(strain));
-    return nlohmann::json::parse(here.run("probe R.h5 --bands --json " + options).output);
+    return here.json("probe R.h5 --bands " + options);
   };
   const auto early = probed(0.001, ""), at_peak = probed(peak, "");
   CHECK(early.at("method") == "loading");
@@ -160,11 +156,10 @@ TEST_CASE("at its peak a biaxial test takes no more second-order work, and a ban
   // The band of the loading stiffness lies where those of soils do, the averaged one does not form.
   CHECK(at_peak.at("band_angle_deg").get<double>() > at_peak.at("roscoe_angle_deg").get<double>() - 8);
   CHECK(at_peak.at("band_angle_deg").get<double>() < at_peak.at("coulomb_angle_deg").get<double>() + 8);
-  const auto averaged =
-      nlohmann::json::parse(here.run("probe R.h5 --bands --method dynamic --size 1e-3 --json").output);
+  const auto averaged = here.json("probe R.h5 --bands --method dynamic --size 1e-3");
   CHECK(averaged.at("acoustic_ratio").get<double>() > at_peak.at("acoustic_ratio").get<double>() + 0.1);
 
-  expect_mistake(here.run("probe S.h5 --bands"), "give the record file of a test");
+  here.refuses("probe S.h5 --bands", "give the record file of a test");
 }
 
 TEST_CASE("spheres in triaxial compression: elastic at first, and at the peak no band before the work is spent",
@@ -173,8 +168,8 @@ TEST_CASE("spheres in triaxial compression: elastic at first, and at the peak no
   const Workplace here;
   here.import_packing("hertz");
   const auto probed = [&](const std::string& settings, const std::string& size) {
-    REQUIRE(here.run("run triaxial --specimen S.h5 -o R.h5 --force " + settings).code == 0);
-    return nlohmann::json::parse(here.run("probe R.h5 --bands --json " + size).output);
+    here.succeeds("run triaxial --specimen S.h5 -o R.h5 --force " + settings);
+    return here.json("probe R.h5 --bands " + size);
   };
   const auto early =
       probed("--set stage.compression.to_strain=1e-4 --set stage.compression.record_every=2e-5", "--size 5e-5");
@@ -198,11 +193,10 @@ TEST_CASE("critical fits the line through the ends of tests, and says what it la
   here.import_packing("dense_p20");
   for (const char* p : {"100", "400"}) {
     const std::string pressure = p;
-    REQUIRE(here.run("run simple_shear_drained --specimen S.h5 -o R" + pressure + ".h5 --set test.pressure_Pa=" +
-                     pressure + "e3 --set stage.shear.to_strain=0.5 --set stage.shear.record_every=0.02")
-                .code == 0);
+    here.succeeds("run simple_shear_drained --specimen S.h5 -o R" + pressure + ".h5 --set test.pressure_Pa=" +
+                  pressure + "e3 --set stage.shear.to_strain=0.5 --set stage.shear.record_every=0.02");
   }
-  const auto json = nlohmann::json::parse(here.run("critical R100.h5 R400.h5 --json").output);
+  const auto json = here.json("critical R100.h5 R400.h5");
   const auto& states = json.at("states");
   REQUIRE(states.size() == 2);
   for (const auto& state : states) {
@@ -214,10 +208,10 @@ TEST_CASE("critical fits the line through the ends of tests, and says what it la
     CHECK(state.at("state_parameter").get<double>() < 0);
     CHECK(state.at("q_over_p").get<double>() > 0.1);
   }
-  expect_mistake(here.run("critical R100.h5 --from 3"), "beyond the end");
-  expect_mistake(here.run("critical S.h5"), "S.h5");
-  REQUIRE(here.run("run biaxial --specimen S.h5 -o N.h5 --set 'output.quantities=[]' --set "
-                   "stage.compression.to_strain=0.001")
-              .code == 0);
-  expect_mistake(here.run("critical N.h5"), "void_ratio");
+  here.refuses("critical R100.h5 --from 3", "beyond the end");
+  here.refuses("critical S.h5", "S.h5");
+  here.succeeds(
+      "run biaxial --specimen S.h5 -o N.h5 --set 'output.quantities=[]' --set "
+      "stage.compression.to_strain=0.001");
+  here.refuses("critical N.h5", "void_ratio");
 }

@@ -6,7 +6,7 @@
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/child.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -59,26 +59,24 @@ TEST_CASE("what is there is replaced with --force only, and then whole") {
   for (const auto& writer : writers) {
     CAPTURE(writer.command);
     std::ofstream(here / "foreign") << "years of work";
-    expect_mistake(here.run(with(writer.command, "foreign")), "foreign: is there already; allowed: a new name");
+    here.refuses(with(writer.command, "foreign"), "foreign: is there already; allowed: a new name");
     CHECK(bytes_of(here / "foreign") == "years of work");
-    const Outcome forced = here.run(with(writer.command, "foreign --force"));
-    INFO(forced.errors);
-    CHECK(forced.code == 0);
+    here.succeeds(with(writer.command, "foreign --force"));
     CHECK(bytes_of(here / "foreign") != "years of work");
     CHECK(!std::filesystem::exists(here / "foreign.tmp"));
     std::filesystem::remove(here / "foreign");
     std::filesystem::remove(here / "foreign.h5");
-    REQUIRE(here.run(with(writer.command, "foreign")).code == 0);
+    here.succeeds(with(writer.command, "foreign"));
     std::filesystem::remove(here / "foreign");
     std::filesystem::remove(here / "foreign.h5");
   }
   // Every file of an export counts, and every specimen of a family.
   std::ofstream(here / "out.json") << "mine";
-  expect_mistake(here.run("export S.h5 --format csv -o out"), "out.json: is there already");
+  here.refuses("export S.h5 --format csv -o out", "out.json: is there already");
   std::ofstream(here / "out.xdmf.h5") << "mine";
-  expect_mistake(here.run("export S.h5 --format xdmf -o out.xdmf"), "out.xdmf.h5: is there already");
+  here.refuses("export S.h5 --format xdmf -o out.xdmf", "out.xdmf.h5: is there already");
   std::ofstream(here / "n_2.h5") << "mine";
-  expect_mistake(here.run("pack tiny.toml --count 3 -o n.h5"), "n_2.h5: is there already");
+  here.refuses("pack tiny.toml --count 3 -o n.h5", "n_2.h5: is there already");
   CHECK(!std::filesystem::exists(here / "n_1.h5"));
   for (const char* file : {"out.json", "out.xdmf.h5", "n_2.h5"}) CHECK(bytes_of(here / file) == "mine");
 }
@@ -94,7 +92,7 @@ TEST_CASE("an input is never replaced, under whatever name, with --force or with
       for (const std::string& name : std::vector<std::string>{input, "./" + input, "sub/link", "sub/other"}) {
         for (const char* force : {"", " --force"}) {
           CAPTURE(writer.command, name, force);
-          expect_mistake(here.run(with(writer.command, name) + force), "would replace " + input);
+          here.refuses(with(writer.command, name) + force, "would replace " + input);
           CHECK(bytes_of(here / input) == before);
           CHECK(!std::filesystem::exists(here / (input + ".journal")));
         }
@@ -106,8 +104,8 @@ TEST_CASE("an input is never replaced, under whatever name, with --force or with
   // Neither is one that has the name which is written to meanwhile.
   std::filesystem::rename(here / "S.h5", here / "R.h5.tmp");
   const std::string before = bytes_of(here / "R.h5.tmp");
-  expect_mistake(here.run("run test.toml --specimen R.h5.tmp -o R.h5"), "would replace R.h5.tmp");
-  expect_mistake(here.run("export R.h5.tmp --format lammps -o R.h5"), "would replace R.h5.tmp");
+  here.refuses("run test.toml --specimen R.h5.tmp -o R.h5", "would replace R.h5.tmp");
+  here.refuses("export R.h5.tmp --format lammps -o R.h5", "would replace R.h5.tmp");
   CHECK(bytes_of(here / "R.h5.tmp") == before);
 }
 
@@ -119,21 +117,19 @@ TEST_CASE("links are followed, and folders, pipes and devices never replaced") {
   for (const auto& writer : writers) {
     CAPTURE(writer.command);
     std::filesystem::create_symlink("store/real", here / "link");  // to nothing yet
-    const Outcome made = here.run(with(writer.command, "link"));
-    INFO(made.errors);
-    CHECK(made.code == 0);
+    here.succeeds(with(writer.command, "link"));
     CHECK(std::filesystem::is_symlink(here / "link"));
     CHECK(std::filesystem::is_regular_file(here / "store/real"));
-    expect_mistake(here.run(with(writer.command, "link")), "link: is there already");
+    here.refuses(with(writer.command, "link"), "link: is there already");
     CHECK(here.run(with(writer.command, "link --force")).code == 0);
     CHECK(std::filesystem::is_symlink(here / "link"));
     std::filesystem::remove(here / "link");
     std::filesystem::remove(here / "link.h5");
     std::filesystem::remove(here / "store/real");
     for (const char* force : {"", " --force"}) {
-      expect_mistake(here.run(with(writer.command, "store") + force), "store: is a folder; allowed: a file");
-      expect_mistake(here.run(with(writer.command, "pipe") + force), "pipe: is a pipe; allowed: a file");
-      if (device) expect_mistake(here.run(with(writer.command, "device") + force), "device: is a device");
+      here.refuses(with(writer.command, "store") + force, "store: is a folder; allowed: a file");
+      here.refuses(with(writer.command, "pipe") + force, "pipe: is a pipe; allowed: a file");
+      if (device) here.refuses(with(writer.command, "device") + force, "device: is a device");
     }
     CHECK(std::filesystem::is_fifo(here / "pipe"));
     CHECK(std::filesystem::is_directory(here / "store"));
@@ -161,22 +157,15 @@ TEST_CASE("programs that write one name at the same time each write it whole, or
 TEST_CASE("output that cannot be written is one line and exit code 1, for every subcommand") {
   if (!std::filesystem::exists("/dev/full")) return;
   const Desk here;
-  REQUIRE(here.run("run test.toml --specimen S.h5 -o R.h5").code == 0);
-  REQUIRE(here.run("import p.csv c.csv m.json -o T.h5").code == 0);
+  here.succeeds("run test.toml --specimen S.h5 -o R.h5");
+  here.succeeds("import p.csv c.csv m.json -o T.h5");
   for (const std::string command :
        {"--help", "--version", "run --help", "pack tiny.toml -o a.h5", "import p.csv c.csv m.json -o b.h5",
         "inspect S.h5", "inspect S.h5 --json", "probe S.h5 --method linear", "run test.toml --specimen S.h5 -o c.h5",
         "recover R.h5 -o d.h5", "seal S.h5 -o e.h5", "compare S.h5 T.h5", "compare S.h5 a.h5",
         "export S.h5 --format csv -o f", "protocols", "protocols biaxial", "keys", "keys --json"}) {
     CAPTURE(command);
-    const std::string shell =
-        "cd '" + (here / "") + "' && '" RVELAB_PROGRAM "' " + command + " >/dev/full 2>err </dev/null";
-    const int status = std::system(shell.c_str());
-    const std::string errors = bytes_of(here / "err");
-    CAPTURE(errors);
-    CHECK(WEXITSTATUS(status) == 1);
-    CHECK_THAT(errors, Contains("rvelab: standard output could not be written"));
-    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+    expect_one_line(here.run(command + " >/dev/full"), 1, "standard output could not be written");
   }
 }
 
@@ -184,14 +173,8 @@ TEST_CASE("beyond the limit of a file's size every writer says so in one line an
   const Desk here;
   for (const auto& writer : writers) {
     CAPTURE(writer.command);
-    const std::string shell = "cd '" + (here / "") + "' && ulimit -f 8 && exec '" RVELAB_PROGRAM "' " +
-                              with(writer.command, "big") + " >out 2>err </dev/null";
-    const int status = std::system(shell.c_str());
-    const std::string errors = bytes_of(here / "err");
-    CAPTURE(errors);
-    CHECK(WEXITSTATUS(status) == 1);
-    CHECK_THAT(errors, Contains("could not be written (File too large)"));
-    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+    expect_one_line(here.shell("ulimit -f 8; '" RVELAB_PROGRAM "' " + with(writer.command, "big")), 1,
+                    "could not be written", "File too large");
     CHECK(!std::filesystem::exists(here / "big"));
     CHECK(!std::filesystem::exists(here / "big.tmp"));
   }
@@ -199,15 +182,12 @@ TEST_CASE("beyond the limit of a file's size every writer says so in one line an
 
 TEST_CASE("without memory every subcommand says so in one line with exit code 1, wherever it ran out") {
   const Desk here;
-  REQUIRE(here.run("pack tiny.toml -o t.h5").code == 0);
+  here.succeeds("pack tiny.toml -o t.h5");
   const auto outcome_at = [&](const std::string& command, long number) {
     for (const char* made : {"o", "o.h5", "o.journal", "o_1", "o_2"}) std::filesystem::remove(here / made);
-    const std::string shell = "cd '" + (here / "") + "' && RVELAB_NO_MEMORY_FROM=" + std::to_string(number) +
-                              " LD_PRELOAD=" RVELAB_MEMORY_SHIM
-                              " ASAN_OPTIONS=verify_asan_link_order=0 '" RVELAB_PROGRAM "' " +
-                              command + " >out 2>err </dev/null";
-    const int status = std::system(shell.c_str());
-    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(here / "out"), bytes_of(here / "err")};
+    return here.shell("RVELAB_NO_MEMORY_FROM=" + std::to_string(number) +
+                      " LD_PRELOAD=" RVELAB_MEMORY_SHIM " ASAN_OPTIONS=verify_asan_link_order=0 '" RVELAB_PROGRAM "' " +
+                      command);
   };
   for (const std::string command : {"inspect t.h5", "export t.h5 --format xdmf -o o", "import p.csv c.csv m.json -o o",
                                     "run test.toml --specimen t.h5 -o o", "compare t.h5 S.h5",
@@ -220,9 +200,8 @@ TEST_CASE("without memory every subcommand says so in one line with exit code 1,
         ++done;  // it needs no more than this
         continue;
       }
-      CHECK(outcome.code == 1);
-      CHECK_THAT(outcome.errors, Contains("rvelab: ") && (Contains("memory") || Contains("bad_alloc")));
-      CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+      expect_one_line(outcome, 1);
+      CHECK_THAT(outcome.errors, Contains("memory") || Contains("bad_alloc"));
       for (const char* half : {"o.tmp", "o_1.tmp", "o_2.tmp"}) CHECK(!std::filesystem::exists(here / half));
       // What a family has made before is kept, in whole.
       for (const char* made : {"o_1", "o_2"}) {
@@ -241,15 +220,7 @@ TEST_CASE("threads that are not to be had are said in one line with exit code 1"
   for (const std::string command :
        {"pack tiny.toml -o o --threads 64", "pack tiny.toml -o o --count 40 --threads 40"}) {
     CAPTURE(command);
-    const std::string shell = "cd '" + (here / "") + "' && ulimit -v 150000 && exec '" RVELAB_PROGRAM "' " + command +
-                              " >out 2>err </dev/null";
-    const int status = std::system(shell.c_str());
-    const std::string errors = bytes_of(here / "err");
-    CAPTURE(errors);
-    CHECK(WIFEXITED(status));
-    CHECK(WEXITSTATUS(status) == 1);
-    CHECK_THAT(errors, Contains("lower --threads"));
-    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+    expect_one_line(here.shell("ulimit -v 150000; '" RVELAB_PROGRAM "' " + command), 1, "lower --threads");
   }
 }
 #endif

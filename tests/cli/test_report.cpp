@@ -1,7 +1,5 @@
 // rvelab report: one page of tests that loads nothing, and what it says when it cannot be made.
-#include <nlohmann/json.hpp>
-
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -15,9 +13,7 @@ void make_two_tests(const Workplace& here) {
   for (const std::string test :
        {"biaxial --set stage.compression.to_strain=0.03 --set output.snapshots_every=30 -o records/b.h5",
         "oedometer --set test.pressure_Pa=20e3 --set stage.large.to_strain=0.002 -o records/o.h5"}) {
-    const Outcome outcome = here.run("run " + test + " --specimen S.h5");
-    INFO(outcome.errors);
-    REQUIRE(outcome.code == 0);
+    here.succeeds("run " + test + " --specimen S.h5");
   }
 }
 
@@ -70,20 +66,19 @@ TEST_CASE("report puts every test of a folder into one page that loads nothing f
   CHECK(column_of(run, "q")["errors"].size() == records);
 
   // The same records, the same page; it is not written over without --force.
-  expect_mistake(here.run("report records -o page.html"), "--force");
-  const Outcome again =
-      here.run("report records/b.h5 records/o.h5 -o page.html --title 'A <title> & more' --force --json");
-  CHECK(again.code == 0);
-  CHECK(Json::parse(again.output)["tests"] == 2);
+  here.refuses("report records -o page.html", "--force");
+  const std::string again =
+      here.succeeds("report records/b.h5 records/o.h5 -o page.html --title 'A <title> & more' --force --json");
+  CHECK(Json::parse(again)["tests"] == 2);
   CHECK(bytes_of(here / "page.html") == page);
 }
 
 TEST_CASE("report thins states that would make a page too large, and says so") {
   const Workplace here;
   here.import_packing("dense_p20");
-  REQUIRE(here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.01 --set output.snapshots_every=1 "
-                   "-o b.h5")
-              .code == 0);
+  here.succeeds(
+      "run biaxial --specimen S.h5 --set stage.compression.to_strain=0.01 --set output.snapshots_every=1 "
+      "-o b.h5");
   const Outcome whole = here.run("report b.h5 -o whole.html"),
                 thin = here.run("report b.h5 -o thin.html --states-MB 0.1");
   CHECK(whole.errors.empty());
@@ -100,21 +95,20 @@ TEST_CASE("report names what is missing: records, a folder") {
   const Workplace here;
   make_two_tests(here);
   std::filesystem::create_directory(here / "empty");
-  expect_mistake(here.run("report none.h5 -o page.html"), "none.h5: is not there");
-  expect_mistake(here.run("report empty -o page.html"), "has no *.h5, nor history.csv");
-  expect_mistake(here.run("report S.h5 -o page.html"), "S.h5: holds a specimen and no records");
-  expect_mistake(here.run("report records -o none/page.html"), "none");
-  expect_mistake(here.run("report records/b.h5 -o records/b.h5 --force"), "records/b.h5");
-  expect_mistake(here.run("report records -o page.html --states-MB 0"), "--states-MB");
-  REQUIRE(here.run("run probe --specimen S.h5 -o records/probe.h5").code == 0);
-  expect_mistake(here.run("report records/probe.h5 -o page.html"), "holds no record");
+  here.refuses("report none.h5 -o page.html", "none.h5: is not there");
+  here.refuses("report empty -o page.html", "has no *.h5, nor history.csv");
+  here.refuses("report S.h5 -o page.html", "S.h5: holds a specimen and no records");
+  here.refuses("report records -o none/page.html", "none");
+  here.refuses("report records/b.h5 -o records/b.h5 --force", "records/b.h5");
+  here.refuses("report records -o page.html --states-MB 0", "--states-MB");
+  here.succeeds("run probe --specimen S.h5 -o records/probe.h5");
+  here.refuses("report records/probe.h5 -o page.html", "holds no record");
   CHECK(!std::filesystem::exists(here / "page.html"));
   const Outcome rest = here.run("report records -o page.html");
   CHECK(rest.code == 0);
   CHECK_THAT(rest.errors, Contains("left out: records/probe.h5 holds no record"));
   // A specimen beside the records of a folder is none of them.
   std::filesystem::copy(here / "S.h5", here / "records/S.h5");
-  const Outcome beside = here.run("report records -o page.html --force");
-  CHECK(beside.code == 0);
-  CHECK_THAT(beside.output, Contains("2 tests, "));
+  const std::string beside = here.succeeds("report records -o page.html --force");
+  CHECK_THAT(beside, Contains("2 tests, "));
 }

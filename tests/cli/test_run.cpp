@@ -1,16 +1,12 @@
 // What a run says at its end.
-#include <nlohmann/json.hpp>
-
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 
 TEST_CASE("a run ends with its time, part by part, its grain-steps and what its stresses may err by") {
   const Workplace here;
   here.import_packing("dense_p20");
-  const Outcome made = here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.01 -o R.h5 --json");
-  REQUIRE(made.code == 0);
-  const auto told = nlohmann::json::parse(made.output);
+  const auto told = here.json("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.01 -o R.h5");
   const double wall = told["wall_s"];
   double parts = 0;
   for (const char* part : {"grains", "pairs", "list", "control", "files", "other"}) {
@@ -35,27 +31,20 @@ TEST_CASE("a run at a rate makes no estimate, and one that is complete took no t
   const Workplace here;
   here.import_packing("dense_p20");
   const std::string test = "run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 --json";
-  const Outcome made = here.run(test + " --set loading.mode=at_rate --set loading.inertial_number=1e-2");
-  INFO(made.errors);
-  REQUIRE(made.code == 0);
-  CHECK(made.output.find("mean_error_estimate") == std::string::npos);
-  CHECK(nlohmann::json::parse(made.output)["records"]["error_estimate"] == std::vector<double>{0, 0, 0});
-  CHECK(made.output.find("time_pairs_s") != std::string::npos);
-  REQUIRE(here.run(test + " -o R.h5").code == 0);
-  const Outcome again = here.run(test + " -o R.h5 --resume");
-  INFO(again.errors);
-  REQUIRE(again.code == 0);
-  CHECK(again.output.find("wall_s") != std::string::npos);
-  CHECK(again.output.find("time_pairs_s") == std::string::npos);
+  const std::string made = here.succeeds(test + " --set loading.mode=at_rate --set loading.inertial_number=1e-2");
+  CHECK(made.find("mean_error_estimate") == std::string::npos);
+  CHECK(nlohmann::json::parse(made)["records"]["error_estimate"] == std::vector<double>{0, 0, 0});
+  CHECK(made.find("time_pairs_s") != std::string::npos);
+  here.succeeds(test + " -o R.h5");
+  const std::string again = here.succeeds(test + " -o R.h5 --resume");
+  CHECK(again.find("wall_s") != std::string::npos);
+  CHECK(again.find("time_pairs_s") == std::string::npos);
 }
 
 TEST_CASE("a run says which event ended a stage before its end: undrained, loose discs liquefy") {
   const Workplace here;
   here.import_packing("soft");
-  const Outcome made = here.run("run biaxial_undrained --specimen S.h5 --set test.pressure_Pa=20e3 --json");
-  INFO(made.errors);
-  REQUIRE(made.code == 0);
-  const auto told = nlohmann::json::parse(made.output);
+  const auto told = here.json("run biaxial_undrained --specimen S.h5 --set test.pressure_Pa=20e3");
   CHECK(told["ended_by"] == std::vector<std::string>{"compression: p_over_first below 0.001"});
   CHECK(told["end_strain"] < 0.1);
 }
@@ -66,9 +55,9 @@ TEST_CASE("a cell that gets thin is told of before and after the run, flagged in
   here.write("turn.toml",
              "[test]\nname = \"turn\"\n[[stage]]\nkind = \"deformation\"\n"
              "gradients = [[0.9999875, -0.005, 0.005, 0.9999875]]\n");
-  REQUIRE(here.run("run turn.toml --specimen S.h5 -o T.h5").code == 0);
-  const auto stands = nlohmann::json::parse(here.run("inspect S.h5 --json").output);
-  const auto turned = nlohmann::json::parse(here.run("inspect T.h5 --json").output);
+  here.succeeds("run turn.toml --specimen S.h5 -o T.h5");
+  const auto stands = here.json("inspect S.h5");
+  const auto turned = here.json("inspect T.h5");
   CHECK(stands["cell_thin"] == false);
   CHECK(turned["shear_until_thin"] > 10);
   CHECK(turned["shear_until_thin"] < 200);
@@ -81,10 +70,8 @@ TEST_CASE("a cell that gets thin is told of before and after the run, flagged in
   CHECK(tilted.errors.find("stage \"simple_shear\": beyond a shear strain of") != std::string::npos);
   CHECK(upright.errors.find("beyond a shear strain") == std::string::npos);
 
-  REQUIRE(here.run("import " + std::string(RVELAB_TEST_DATA) +
-                   "/nine_discs/grains.csv --cell 0.03,0.03,0.1 --material " + std::string(RVELAB_TEST_DATA) +
-                   "/nine_discs/soil.toml -o nine.h5")
-              .code == 0);
+  here.succeeds("import " + std::string(RVELAB_TEST_DATA) + "/nine_discs/grains.csv --cell 0.03,0.03,0.1 --material " +
+                std::string(RVELAB_TEST_DATA) + "/nine_discs/soil.toml -o nine.h5");
   const Outcome small = here.run("run shear.toml --specimen nine.h5 --json");
   INFO(small.errors);
   REQUIRE(small.code == 0);

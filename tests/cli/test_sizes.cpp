@@ -3,13 +3,12 @@
 #include <sys/resource.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -75,7 +74,7 @@ TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt,
   for (const double factor : {10.0, 1000.0, 1e8, 1e200}) {
     CAPTURE(factor);
     here.write("p.csv", with_radii_times(stem + ".particles.csv", factor));
-    expect_mistake(here.run("import p.csv " + stem + ".json -o S.h5"), "in mm?");
+    here.refuses("import p.csv " + stem + ".json -o S.h5", "in mm?");
     CHECK(!std::filesystem::exists(here / "S.h5"));
   }
 }
@@ -83,8 +82,7 @@ TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt,
 TEST_CASE("all of import, pack and inspect say what the numbers of a specimen are to each other") {
   const Workplace here;
   here.write("small.toml", few_grains);
-  const Outcome packed = here.run("pack small.toml -o P.h5");
-  REQUIRE(packed.code == 0);
+  const std::string packed = here.succeeds("pack small.toml -o P.h5");
   here.import_packing("hertz");
   for (const std::string file : {"P.h5", "S.h5"}) {
     CAPTURE(file);
@@ -135,7 +133,7 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
   // The same line from pack and from import.
   const std::string shown = here.run("inspect P.h5").output;
   const auto line = shown.substr(shown.find("void ratio "), shown.find(" diameters\n") - shown.find("void ratio "));
-  CHECK_THAT(packed.output, Contains(line));
+  CHECK_THAT(packed, Contains(line));
   const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/hertz";
   const std::string import = "import " + stem + ".particles.csv " + stem + ".contacts.csv " + stem + ".json -o I.h5";
   CHECK_THAT(here.run(import).output, Contains("proportions") && Contains("kn/(p d) "));
@@ -168,10 +166,8 @@ TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick s
   CHECK(work_of("pack search.toml -o S.h5 --threads 1", search) < 20 * one_draw);
   CHECK_THAT(search.errors, Contains("pack.thickness_m = 0.1 m is"));
   // As thick as a grain they are stiff enough.
-  const Outcome thin = here.run("pack mm.toml -o S.h5 --set pack.thickness_m=3e-3 --json");
-  INFO(thin.errors);
-  REQUIRE(thin.code == 0);
-  CHECK(Json::parse(thin.output)["largest_overlap_ratio"].get<double>() < 0.25);
+  const std::string thin = here.succeeds("pack mm.toml -o S.h5 --set pack.thickness_m=3e-3 --json");
+  CHECK(Json::parse(thin)["largest_overlap_ratio"].get<double>() < 0.25);
 }
 
 TEST_CASE("a cell too small for its grains is no packing") {
@@ -191,8 +187,8 @@ TEST_CASE("a skin beyond all use is refused by its key before anything is packed
   here.write("small.toml", few_grains);
   for (const char* skin : {"100", "1000", "1e10", "2147483648", "4294967296"}) {
     CAPTURE(skin);
-    expect_mistake(here.run("pack small.toml -o S.h5 --set solver.skin=" + std::string(skin)),
-                   "is out of range; allowed: above 0 to 10");
+    here.refuses("pack small.toml -o S.h5 --set solver.skin=" + std::string(skin),
+                 "is out of range; allowed: above 0 to 10");
   }
 }
 
@@ -202,9 +198,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
                            "stiffness_ratio = 0.5\nfriction = 0.4\n";
   here.write("two.toml", text);
   const auto frictions = [&](const std::string& settings) {
-    const Outcome packed = here.run("pack two.toml -o S.h5 --force --set pack.number=30 " + settings);
-    INFO(packed.errors);
-    REQUIRE(packed.code == 0);
+    here.succeeds("pack two.toml -o S.h5 --force --set pack.number=30 " + settings);
     const rvelab::Specimen s = rvelab::io::read_specimen(here / "S.h5");
     return std::pair(s.materials.at(0).friction, s.materials.at(1).friction);
   };
@@ -216,10 +210,10 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
   const auto angle = frictions("--set material.friction_angle_deg=45");
   CHECK(angle.first == Approx(1));
   CHECK(angle.second == Approx(1));
-  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.frictoin=0.3"), "the nearest known key is");
-  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.friction=-1"),
-                 "--set material.friction=-1: material.friction = -1 is out of range");
-  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
+  here.refuses("pack two.toml -o S.h5 --force --set material.frictoin=0.3", "the nearest known key is");
+  here.refuses("pack two.toml -o S.h5 --force --set material.friction=-1",
+               "--set material.friction=-1: material.friction = -1 is out of range");
+  here.refuses("pack two.toml -o S.h5 --force --set material.clay.friction=0.3", "0 (sand), 1 (glass)");
 }
 
 TEST_CASE("a void ratio far out of reach is refused after a few rounds of packings, with the range that was reached") {
@@ -243,19 +237,16 @@ TEST_CASE("a void ratio far out of reach is refused after a few rounds of packin
 TEST_CASE("a specimen without friction exports every contact that inspect counts") {
   const Workplace here;
   here.write("small.toml", few_grains);
-  REQUIRE(here.run("pack small.toml -o S.h5 --set material.friction=0").code == 0);
+  here.succeeds("pack small.toml -o S.h5 --set material.friction=0");
   const long contacts = Json::parse(here.run("inspect S.h5 --json").output)["contacts"];
   REQUIRE(contacts > 60);
-  const Outcome exported = here.run("export S.h5 --format csv -o out --json");
-  REQUIRE(exported.code == 0);
+  const std::string exported = here.succeeds("export S.h5 --format csv -o out --json");
   const std::string table = bytes_of(here / "out.contacts.csv");
   CHECK(std::count(table.begin(), table.end(), '\n') == contacts + 2);
   CHECK(Json::parse(bytes_of(here / "out.json"))["n_contacts"] == contacts);
   // They come back with the forces of the law, and the stress is the same.
-  const std::string import = Json::parse(exported.output)["import_with"];
+  const std::string import = Json::parse(exported)["import_with"];
   const double p = Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"];
-  const Outcome imported = here.run(import.substr(7) + " --force");
-  INFO(imported.errors);
-  REQUIRE(imported.code == 0);
+  here.succeeds(import.substr(7) + " --force");
   CHECK(Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"].get<double>() == Approx(p).epsilon(1e-9));
 }

@@ -1,23 +1,16 @@
 // The strength of one cemented specimen: unconfined and confined compression, direct tension; grains without bonds at 0
 // Pa.
-#include <nlohmann/json.hpp>
-
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
 
 TEST_CASE("one cemented specimen is tested without lateral stress, at a pressure and in tension") {
   const Workplace here;
-  REQUIRE(here.run("pack pack_dense -o S.h5 --set pack.number=60").code == 0);
-  const Outcome made = here.run("run cementing --specimen S.h5 -o C.h5");
-  INFO(made.errors);
-  REQUIRE(made.code == 0);
-  const Outcome ran = here.run(
-      "calibrate cemented_strength --specimen C.h5 --pressures 0,4e4 --tension direct_tension -o envelope --json");
-  INFO(ran.errors);
-  REQUIRE(ran.code == 0);
-  const auto found = nlohmann::json::parse(ran.output);
+  here.succeeds("pack pack_dense -o S.h5 --set pack.number=60");
+  here.succeeds("run cementing --specimen S.h5 -o C.h5");
+  const auto found =
+      here.json("calibrate cemented_strength --specimen C.h5 --pressures 0,4e4 --tension direct_tension -o envelope");
   CHECK(found["cohesive"] == true);
   CHECK_THAT(found["cohesion"].get<std::string>(), Contains("bonds"));
   CHECK(!found.contains("warning"));  // all tests pass a peak: they break

@@ -1,8 +1,7 @@
 // rvelab study as a user runs it: results and their files, the way back from study.toml, resume, refusals, the figure.
-#include <nlohmann/json.hpp>
 
 #include "tests/child.hpp"
-#include "tests/cli/program.hpp"
+#include "tests/program.hpp"
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
@@ -40,11 +39,9 @@ std::size_t pieces_in(const Workplace& here, const std::string& folder) {
 TEST_CASE("a study prints and writes its results, and its file runs it again") {
   const Workplace here;
   here.import_packing("dense_p20");
-  const Outcome outcome = here.run("study " + small_test + grid + "--repeat 2 -o F");
-  INFO(outcome.errors);
-  REQUIRE(outcome.code == 0);
-  CHECK_THAT(outcome.output, Contains("over p, 3 increments") && Contains("in tol.") && Contains("angle_deg") &&
-                                 Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
+  const std::string outcome = here.succeeds("study " + small_test + grid + "--repeat 2 -o F");
+  CHECK_THAT(outcome, Contains("over p, 3 increments") && Contains("in tol.") && Contains("angle_deg") &&
+                          Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
   const OrderedJson json = OrderedJson::parse(bytes_of(here / "F/study.json"));
   REQUIRE(json["points"].size() == 2);
   CHECK(json["points"][0]["values"]["solver.target_unbalanced"] == "1e-2");
@@ -56,16 +53,12 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   CHECK_THAT(csv, Contains("run,solver.target_unbalanced,increments,failed_increments,rms_error_over_p") &&
                       Contains("\nreference,,3,0,") && Contains("\n2,1e-3,3,0,"));
 
-  const Outcome again = here.run("study F/study.toml --json --threads 1");
-  INFO(again.errors);
-  REQUIRE(again.code == 0);
-  CHECK(without_times(OrderedJson::parse(again.output)) == without_times(json));
+  const std::string again = here.succeeds("study F/study.toml --json --threads 1");
+  CHECK(without_times(OrderedJson::parse(again)) == without_times(json));
 
-  const Outcome figure =
-      here.run("-B '" RVELAB_SOURCE_DIR "/tools/plot/study.py' F -o F/study.png", "/usr/bin/python3");
-  INFO(figure.errors);
-  CHECK(figure.code == 0);
-  CHECK_THAT(figure.output, Contains("2 grid points"));
+  const std::string figure =
+      here.succeeds("-B '" RVELAB_SOURCE_DIR "/tools/plot/study.py' F -o F/study.png", "/usr/bin/python3");
+  CHECK_THAT(figure, Contains("2 grid points"));
   CHECK(bytes_of(here / "F/study.png").starts_with("\x89PNG"));
 }
 
@@ -73,7 +66,7 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
   const Workplace here;
   here.import_packing("dense_p20");
   const std::string study = "study " + small_test + grid;
-  REQUIRE(here.run(study + "-o whole").code == 0);
+  here.succeeds(study + "-o whole");
   {
     Child child({RVELAB_PROGRAM, "study", "biaxial", here / "S.h5", "--set", "stage.compression.to_strain=0.002",
                  "--increments", "3", "--vary", "solver.target_unbalanced=1e-2,1e-3", "--reference",
@@ -93,21 +86,19 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
   REQUIRE(std::filesystem::exists(here / "F/pieces/path_0_1_1.json"));
   const auto made = first_piece();
 
-  expect_mistake(here.run(study + "-o F"), "F/study.toml: is there already; allowed: a new name, --resume");
-  expect_mistake(here.run(study + "--repeat 2 -o F --resume"), "is another study: repeats = 1 there and 2 here");
-  expect_mistake(here.run(study + "--set damping.local=0.2 -o F --resume"), "is another study: settings = ");
+  here.refuses(study + "-o F", "F/study.toml: is there already; allowed: a new name, --resume");
+  here.refuses(study + "--repeat 2 -o F --resume", "is another study: repeats = 1 there and 2 here");
+  here.refuses(study + "--set damping.local=0.2 -o F --resume", "is another study: settings = ");
   CHECK(pieces_in(here, "F") == kept);
 
-  const Outcome resumed = here.run("study F/study.toml -o F --resume");
-  INFO(resumed.errors);
-  REQUIRE(resumed.code == 0);
+  here.succeeds("study F/study.toml -o F --resume");
   CHECK(first_piece() == made);
   CHECK(without_times(OrderedJson::parse(bytes_of(here / "F/study.json"))) ==
         without_times(OrderedJson::parse(bytes_of(here / "whole/study.json"))));
 
   here.write("F/pieces/path_1_1_1.json", "{");
-  expect_mistake(here.run("study F/study.toml -o F --resume"), "path_1_1_1.json: is damaged");
-  expect_mistake(here.run("study F/study.toml -o F --force"), "would replace F/study.toml");
+  here.refuses("study F/study.toml -o F --resume", "path_1_1_1.json: is damaged");
+  here.refuses("study F/study.toml -o F --force", "would replace F/study.toml");
   CHECK(here.run(study + "-o F --force --repeat 0").code == 0);
   CHECK(pieces_in(here, "F") == 3);
 }
@@ -116,38 +107,36 @@ TEST_CASE("mistakes in the command of a study are told in one line that names ke
   const Workplace here;
   here.import_packing("dense_p20");
   const std::string some = "study " + small_test + "--reference solver.fixed_substeps=200 ";
-  expect_mistake(here.run(some + "--vary solver.target_unbalancd=1e-2"), "--vary solver.target_unbalancd=1e-2");
-  expect_mistake(here.run(some + "--vary solver.time_step_factor=0.5,2"), "solver.time_step_factor=2: ");
-  expect_mistake(here.run(some + "--vary solver.skin="), "--vary solver.skin= has no values; allowed: KEY=v1,v2");
-  expect_mistake(here.run(some + "--vary solver.skin=0.1 --vary solver.skin=0.2"), "varies solver.skin twice");
-  expect_mistake(here.run(some + "--vary loading.mode=quasi_static,at_rate"), "loading.mode=at_rate: ");
-  expect_mistake(here.run("study " + small_test + "--vary solver.skin=0.1"), "no reference is given");
-  expect_mistake(here.run("study biaxial --reference solver.skin=0.1"), "no specimen is given");
-  expect_mistake(here.run("study biaxial none.h5 --reference solver.skin=0.1"), "none.h5");
-  expect_mistake(here.run("study none.toml S.h5 --reference solver.skin=0.1"), "none.toml: no such file");
-  expect_mistake(here.run(some + "--resume"), "--resume is given without -o");
-  expect_mistake(here.run(some + "--repeat -1"), "--repeat");
-  expect_mistake(here.run("study biaxial S.h5 --reference solver.skin=0.1 --repeat 0 --increments 0"),
-                 "leave nothing to run");
+  here.refuses(some + "--vary solver.target_unbalancd=1e-2", "--vary solver.target_unbalancd=1e-2");
+  here.refuses(some + "--vary solver.time_step_factor=0.5,2", "solver.time_step_factor=2: ");
+  here.refuses(some + "--vary solver.skin=", "--vary solver.skin= has no values; allowed: KEY=v1,v2");
+  here.refuses(some + "--vary solver.skin=0.1 --vary solver.skin=0.2", "varies solver.skin twice");
+  here.refuses(some + "--vary loading.mode=quasi_static,at_rate", "loading.mode=at_rate: ");
+  here.refuses("study " + small_test + "--vary solver.skin=0.1", "no reference is given");
+  here.refuses("study biaxial --reference solver.skin=0.1", "no specimen is given");
+  here.refuses("study biaxial none.h5 --reference solver.skin=0.1", "none.h5");
+  here.refuses("study none.toml S.h5 --reference solver.skin=0.1", "none.toml: no such file");
+  here.refuses(some + "--resume", "--resume is given without -o");
+  here.refuses(some + "--repeat -1", "--repeat");
+  here.refuses("study biaxial S.h5 --reference solver.skin=0.1 --repeat 0 --increments 0", "leave nothing to run");
   CHECK(here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 -o other.h5").code == 0);
   here.write("mine.toml", "[study]\nprotocol = \"biaxial\"\nspecimens = [\"other.h5\"]\ndigests = [\"00000000\"]\n");
-  expect_mistake(here.run("study mine.toml --reference solver.skin=0.1"), "is not the specimen of mine.toml");
+  here.refuses("study mine.toml --reference solver.skin=0.1", "is not the specimen of mine.toml");
 }
 
 TEST_CASE("every kept study runs, cut short") {
   const Workplace here;
   here.import_packing("dense_p20");
-  REQUIRE(here.run("pack pack_hertz --set pack.number=100 -o spheres.h5").code == 0);
+  here.succeeds("pack pack_hertz --set pack.number=100 -o spheres.h5");
   std::size_t studies = 0;
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols/studies")) {
     CAPTURE(entry.path().string());
     const std::string specimen = entry.path().stem() == "tolerance_3d" ? "spheres.h5" : "S.h5";
-    const Outcome outcome = here.run("study '" + entry.path().string() + "' " + specimen +
-                                     " --increments 1 --repeat 0 --json --set stage.compression.to_strain=0.002 "
-                                     "--reference solver.fixed_substeps=100");
-    INFO(outcome.errors);
-    REQUIRE(outcome.code == 0);
-    const OrderedJson points = OrderedJson::parse(outcome.output)["points"];
+    const std::string outcome =
+        here.succeeds("study '" + entry.path().string() + "' " + specimen +
+                      " --increments 1 --repeat 0 --json --set stage.compression.to_strain=0.002 "
+                      "--reference solver.fixed_substeps=100");
+    const OrderedJson points = OrderedJson::parse(outcome)["points"];
     CHECK(points.size() >= 5);
     for (const OrderedJson& point : points) {
       CAPTURE(point.dump());

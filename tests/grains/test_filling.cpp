@@ -152,9 +152,10 @@ TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better t
   const Mesh egg = read_stl(as_binary(ellipsoid(4, {2, 1, 0.8})), "egg.stl");
   for (const Mesh* mesh : {&block, &egg}) {
     double before = 1e300;
+    Filling filling;
     for (const int members : {1, 5, 20, 60}) {
       INFO(members);
-      const Filling filling = filled(*mesh, members);
+      filling = filled(*mesh, members);
       CHECK(int(filling.spheres.size()) <= members);
       CHECK(filling.largest_distance < before);
       CHECK(filling.mean_distance < filling.largest_distance);
@@ -163,12 +164,12 @@ TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better t
       if (mesh == &block) CHECK(out_of_box(filling, sides) < 1e-9);
       before = filling.largest_distance;
     }
+    if (mesh == &block) continue;
+    CHECK(filling.largest_distance < 0.1);
+    CHECK(filling.volume_ratio > 0.93);
+    CHECK(filling.inertia_ratio > 0.9);
+    CHECK(filling.largest_inertia_ratio < 1.1);
   }
-  const Filling fine = filled(egg, 60);
-  CHECK(fine.largest_distance < 0.1);
-  CHECK(fine.volume_ratio > 0.93);
-  CHECK(fine.inertia_ratio > 0.9);
-  CHECK(fine.largest_inertia_ratio < 1.1);
 }
 
 TEST_CASE("A surface that is no grain is refused with the remedy", "[grains]") {

@@ -30,4 +30,21 @@ inline Section section_of(Shape shape, double radius) {
   return {pi * radius * radius, pi * std::pow(radius, 4) / 4, pi * std::pow(radius, 4) / 2};
 }
 
+/// Bonds of Young's modulus 1e8 Pa, as strong in tension as in shear (Pa), over gaps up to this part of the smaller
+/// radius.
+inline protocol::Cementation cement_of(double strength, double gap = 0.05) {
+  protocol::Cementation cement;
+  cement.gap = gap;
+  cement.young_modulus = 1e8;
+  cement.tensile_strength = cement.cohesion = strength;
+  return cement;
+}
+
+/// 81 discs or 125 spheres at rest.
+inline Rve small_packing_at_rest(Shape shape, double friction) {
+  return at_rest(disordered(shape, dimension_of(shape) == 2 ? 9 : 5, linear_material(2e6, 1e6, friction),
+                            Law::linear_stiffness, 0.51, 5),
+                 1e-9);
+}
+
 }  // namespace rvelab::test

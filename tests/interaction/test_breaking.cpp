@@ -19,11 +19,7 @@ Rve row_of_grains(Shape shape, double strength, double weakest) {
   Specimen s = empty_specimen(shape, number * row_spacing, linear_material(2e6, 1e6, 0.3));
   for (int k = 0; k < number; ++k) add_grain(s, Vector3(k * row_spacing, 0.2 * row_spacing, 0), 0.49 * row_spacing);
   Rve rve(s);
-  protocol::Cementation cement;
-  cement.gap = 0.05;
-  cement.young_modulus = 1e8;
-  cement.tensile_strength = cement.cohesion = strength;
-  Interactions all = protocol::cemented(rve, cement);
+  Interactions all = protocol::cemented(rve, cement_of(strength));
   REQUIRE(bonds_of(all).size() == std::size_t(number));
   double columns[interaction_columns<ParallelBond>()];
   put_columns<ParallelBond>(bonds_of(all)[2], columns);
@@ -34,12 +30,8 @@ Rve row_of_grains(Shape shape, double strength, double weakest) {
 }
 
 Rve packing_of_strength(Shape shape, double strength) {
-  Rve rve = at_rest(disordered(shape, dimension_of(shape) == 2 ? 9 : 5, linear_material(2e6, 1e6, 0.4),
-                               Law::linear_stiffness, 0.51, 5),
-                    1e-9);
-  protocol::Cementation cement;
-  cement.young_modulus = 1e8;
-  cement.tensile_strength = cement.cohesion = strength;
+  Rve rve = small_packing_at_rest(shape, 0.4);
+  protocol::Cementation cement = cement_of(strength, 0);
   cement.strength_scatter = strength < 1e30 ? 0.3 : 0;
   rve.set_interactions(protocol::cemented(rve, cement));
   return rve;

@@ -26,23 +26,13 @@ Rve loose_crystal(Shape shape, int side) {
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) add_grain(s, Vector3(i, j, plane ? 0 : k) * grain_spacing, grain_radius, j % 2);
   Rve rve(s);
-  protocol::Cementation cement;
-  cement.gap = 0.1;
-  cement.young_modulus = 1e8;
-  cement.tensile_strength = cement.cohesion = 1e9;
-  rve.set_interactions(protocol::cemented(rve, cement));
+  rve.set_interactions(protocol::cemented(rve, cement_of(1e9, 0.1)));
   return rve;
 }
 
 Rve bonded_packing(Shape shape, double strength) {
-  Rve rve = at_rest(disordered(shape, dimension_of(shape) == 2 ? 9 : 5, linear_material(2e6, 1e6, 0.3),
-                               Law::linear_stiffness, 0.51, 5),
-                    1e-9);
-  protocol::Cementation cement;
-  cement.gap = 0.05;
-  cement.young_modulus = 1e8;
-  cement.tensile_strength = cement.cohesion = strength;
-  rve.set_interactions(protocol::cemented(rve, cement));
+  Rve rve = small_packing_at_rest(shape, 0.3);
+  rve.set_interactions(protocol::cemented(rve, cement_of(strength)));
   return rve;
 }
 

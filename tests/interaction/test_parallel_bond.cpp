@@ -150,10 +150,7 @@ TEST_CASE("every instruction set moves bonds by the same bits", "[bond]") {
     Specimen s = disordered(shape, side, m, Law::linear_stiffness, 0.505, 3);
     s.contact.rolling = true;
     Rve packed = at_rest(s, 1e-6);
-    protocol::Cementation cement;
-    cement.gap = 0.05;
-    cement.young_modulus = 1e8;
-    cement.tensile_strength = cement.cohesion = 1e6;
+    protocol::Cementation cement = cement_of(1e6);
     cement.strength_scatter = 0.36;
     packed.set_interactions(protocol::cemented(packed, cement));
     REQUIRE(bonds_of(packed).size() > packed.size());

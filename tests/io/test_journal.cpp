@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <regex>
 
 #include "random_specimen.hpp"
 #include "rvelab/io/crc32c.hpp"
@@ -267,17 +269,18 @@ TEST_CASE("a place that cannot be written to is refused with its name") {
 }
 
 TEST_CASE("the manual lists the types of frames and the columns of a record") {
-  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/tools/manual/pages/file_format.md");
-  const std::vector<std::pair<const char*, std::uint32_t>> types{{"begin_frame", io::begin_frame},
-                                                                 {"record_frame", io::record_frame},
-                                                                 {"probe_frame", io::probe_frame},
-                                                                 {"checkpoint_frame", io::checkpoint_frame},
-                                                                 {"snapshot_frame", io::snapshot_frame}};
-  for (const auto& [name, type] : types) {
-    CHECK_THAT(readme, Contains("| " + std::string(name) + " | " + std::to_string(type) + " |"));
-  }
-  CHECK(io::journal_version == 1);
-  CHECK_THAT(readme, Contains("a uint32 format version\n(1)"));
+  std::string page = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/tools/manual/pages/file_format.md");
+  std::replace(page.begin(), page.end(), '\n', ' ');
+  const auto documented = [&](const std::string& pattern) {
+    CAPTURE(pattern);
+    CHECK(std::regex_search(page, std::regex(pattern)));
+  };
+  for (const auto& [name, type] :
+       {std::pair{"begin_frame", io::begin_frame}, std::pair{"record_frame", io::record_frame},
+        std::pair{"probe_frame", io::probe_frame}, std::pair{"checkpoint_frame", io::checkpoint_frame},
+        std::pair{"snapshot_frame", io::snapshot_frame}})
+    documented("\\| *" + std::string(name) + " *\\| *" + std::to_string(type) + " *\\|");
+  documented("rvejrnl[^.]*format version *\\(" + std::to_string(io::journal_version) + "\\)");
   const Folder folder;
   journal_of_a_test(folder / "j", 1);
   std::string columns;
@@ -286,11 +289,9 @@ TEST_CASE("the manual lists the types of frames and the columns of a record") {
     if (frame.type == io::record_frame) payload = frame.payload.size();
     if (frame.type != io::begin_frame) return;
     const auto begin = io::Hdf5File::from_image("begin", frame.payload);
-    for (const auto& name : begin.read_text("/journal/columns")) columns += (columns.empty() ? "" : ", ") + name;
+    for (const auto& name : begin.read_text("/journal/columns")) columns += (columns.empty() ? "" : ", *") + name;
     for (const auto size : begin.read<std::int64_t>("/journal/column_bytes")) bytes += static_cast<std::size_t>(size);
   });
   CHECK(payload == 8 + bytes);
-  std::string flowing = readme;
-  std::replace(flowing.begin(), flowing.end(), '\n', ' ');
-  CHECK_THAT(flowing, Contains("in this order: " + columns + "."));
+  documented("[ ,]" + columns + "\\.");
 }

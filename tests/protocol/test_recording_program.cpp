@@ -48,6 +48,10 @@ class Bench {
     const std::string text = errors();
     CHECK(std::count(text.begin(), text.end(), '\n') == 1);
   }
+  void ends(const std::vector<std::string>& command, int code, const std::string& word) const {
+    CHECK(run(command) == code);
+    expect_one_line(word);
+  }
   /// Waits until a file is there, two minutes at most.
   bool appears(const std::string& path) const {
     for (int k = 0; k < 120'000 && !std::filesystem::exists(path); ++k) {
@@ -117,9 +121,9 @@ TEST_CASE("Ctrl-C and SIGTERM end a run within a second of its work, with their 
 TEST_CASE("a run that fails leaves the records before the failure, published") {
   const Bench bench;
   const std::string path = bench.folder / "r.h5";
-  CHECK(bench.run(bench.command("long.toml", {"-o", path, "--set", "solver.max_substeps=60", "--set",
-                                              "stage.compression.record_every=0.0003"})) == 1);
-  bench.expect_one_line("max_substeps");
+  bench.ends(bench.command("long.toml", {"-o", path, "--set", "solver.max_substeps=60", "--set",
+                                         "stage.compression.record_every=0.0003"}),
+             1, "max_substeps");
   const io::RecordedTest left = io::read_recorded_test(path);
   CHECK(!left.complete);
   CHECK(left.result.records.size() > 0);
@@ -154,13 +158,10 @@ TEST_CASE("what cannot be used is one line and exit code 2, before anything is m
   const Bench bench;
   const std::string path = bench.folder / "r.h5";
   // A folder that nobody may write to, not even root.
-  CHECK(bench.run(bench.command("short.toml", {"-o", "/proc/r.h5"})) == 2);
-  bench.expect_one_line("/proc/r.h5");
-  CHECK(bench.run(bench.command("short.toml", {"-o", bench.folder / "s.h5/r.h5"})) == 2);
-  bench.expect_one_line("does not exist");
+  bench.ends(bench.command("short.toml", {"-o", "/proc/r.h5"}), 2, "/proc/r.h5");
+  bench.ends(bench.command("short.toml", {"-o", bench.folder / "s.h5/r.h5"}), 2, "does not exist");
   for (const std::string option : {"--force", "--resume"}) {
-    CHECK(bench.run(bench.command("short.toml", {option})) == 2);
-    bench.expect_one_line(option + " is given without -o");
+    bench.ends(bench.command("short.toml", {option}), 2, option + " is given without -o");
   }
   CHECK(bench.run(bench.command("short.toml", {"-o", path, "--force", "--resume"})) == 2);
   CHECK(!std::filesystem::exists(path));
@@ -168,14 +169,11 @@ TEST_CASE("what cannot be used is one line and exit code 2, before anything is m
   REQUIRE(bench.run(bench.command("short.toml", {"-o", path})) == 0);
   CHECK(!std::filesystem::exists(path + ".journal"));
   const std::string before = bytes_of(path);
-  CHECK(bench.run(bench.command("short.toml", {"-o", path})) == 2);
-  bench.expect_one_line("--force");
-  CHECK(bench.run(bench.command("long.toml", {"-o", path, "--resume"})) == 2);
-  bench.expect_one_line("another protocol");
+  bench.ends(bench.command("short.toml", {"-o", path}), 2, "--force");
+  bench.ends(bench.command("long.toml", {"-o", path, "--resume"}), 2, "another protocol");
   // A mistake in the protocol's overrides is found before --force removes anything.
   CHECK(bench.run(bench.command("short.toml", {"-o", path, "--force", "--set", "material.mud.friction=1"})) == 2);
-  CHECK(bench.run(bench.command("short.toml", {"-o", path, "--resume"})) == 0);
-  bench.expect_one_line("is complete; nothing was run");
+  bench.ends(bench.command("short.toml", {"-o", path, "--resume"}), 0, "is complete; nothing was run");
   CHECK(bytes_of(path) == before);
   std::filesystem::copy_file(path, bench.folder / "before.h5");
   CHECK(bench.run(bench.command("short.toml", {"-o", path, "--force"})) == 0);
@@ -183,8 +181,7 @@ TEST_CASE("what cannot be used is one line and exit code 2, before anything is m
 
   // Vanished input.
   std::filesystem::remove(bench.folder / "s.h5");
-  CHECK(bench.run(bench.command("short.toml", {"-o", path, "--force"})) == 2);
-  bench.expect_one_line("s.h5: no such file");
+  bench.ends(bench.command("short.toml", {"-o", path, "--force"}), 2, "s.h5: no such file");
   CHECK(std::filesystem::exists(path));
 }
 
@@ -313,10 +310,8 @@ TEST_CASE("calibrate keeps its records in the same way: refused, stopped, gone o
   REQUIRE(bench.appears(bench.folder / "R_21000.h5.journal"));
   CHECK(stopped(*run, SIGINT, 2) == 130);  // two tests at once
   bench.expect_one_line("0 of 2 tests complete");
-  CHECK(bench.run(calibrate(slow)) == 2);
-  bench.expect_one_line("R_20000.h5");
-  CHECK(bench.run(calibrate({"--resume"})) == 2);  // another strain: another protocol
-  bench.expect_one_line("another protocol");
+  bench.ends(calibrate(slow), 2, "R_20000.h5");
+  bench.ends(calibrate({"--resume"}), 2, "another protocol");  // another strain: another protocol
   REQUIRE(bench.run(calibrate({"--force"})) == 0);
   const std::string first = bytes_of(bench.folder / "R_20000.h5"), printed = bytes_of(bench.folder / "out");
   CHECK(!std::filesystem::exists(bench.folder / "R_20000.h5.journal"));

@@ -79,10 +79,9 @@ TEST_CASE("An event names stages and quantities that are there, and only stages 
   };
   using Catch::Matchers::Contains;
   const std::string stage = "[[stage]]\nkind = \"compression\"\nto_strain = 0.1\n  [[stage.until]]\n";
-  CHECK_THAT(
-      message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  then = \"shaer\"\n"),
-      Contains("t.toml:10: stage.compression.until.0.then = \"shaer\" names no stage; allowed: end, compression; "
-               "correct the name"));
+  CHECK_THAT(message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  then = \"shaer\"\n"),
+             Contains("t.toml:10: stage.compression.until.0.then") && Contains("\"shaer\"") &&
+                 Contains("allowed: end, compression"));
   CHECK_THAT(message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  then = \"compresion\"\n"),
              Contains("the nearest is compression"));
   CHECK_THAT(message_of(stage + "  quantity = \"qq\"\n  above = 1\n"),

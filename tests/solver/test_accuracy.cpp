@@ -65,79 +65,104 @@ TEST_CASE("The error allowed is that of its two tolerances", "[solver]") {
   CHECK(allowed_error(0.01, 1e-4, 2e3, 5e3, 1e5) == Approx(0.01 * 2e3 + 10));
   CHECK(allowed_error(0.01, 1e-4, 100, 5e3, 1e5) == Approx(0.01 * 500 + 10));  // soft: a tenth of the network's answer
   CHECK(allowed_error(0.01, 1e-4, 2e3, 5e3, -1e5) == Approx(20));              // in tension the relative part alone
-  // p = 100 kPa, overlap 10 um between discs of 10 mm: stress and overlap are proportional, so that C = p d/overlap
-  // but for the share of the contacts' directions.
-  CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1) == Approx(0.7e8));
-  CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1.5) == Approx(1.05e8));
+}
+
+TEST_CASE("A network is stiff by its pressure over the strain of its overlaps", "[solver]") {
+  const double stiffness = network_stiffness(1e5, 1e-5, 1e-2, 1);
+  CHECK(stiffness > 0.5 * 1e5 / 1e-3);  // stress and overlap are proportional, but for the directions of the contacts
+  CHECK(stiffness < 1e5 / 1e-3);
+  CHECK(network_stiffness(3e5, 1e-5, 1e-2, 1) == Approx(3 * stiffness));
+  CHECK(network_stiffness(1e5, 2e-5, 2e-2, 1) == Approx(stiffness));
+  CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1.5) == Approx(1.5 * stiffness));  // Hertz: forces go with overlap^(3/2)
   CHECK(network_stiffness(0, 0, 1e-2, 1) == 0);
-  CHECK(error_per_unbalance(1, 0, 0.3, 2) == Approx(0.4));
-  CHECK(error_per_unbalance(0.64, 0, 0.3, 2) == Approx(0.4 / (0.64 * 0.64 * 0.8)));
-  CHECK(error_per_unbalance(0.01, 0, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
-  // The larger of what sliding and what few contacts leave soft.
-  CHECK(error_per_unbalance(1, 2, 0.3, 2) == Approx(0.4));
-  CHECK(error_per_unbalance(1, 1.1, 0.3, 2) == Approx(1.3));
-  CHECK(error_per_unbalance(1, 0.8, 0.3, 2) == Approx(2));
-  CHECK(error_per_unbalance(0.4, 1, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
-  CHECK(error_per_unbalance(1, 2, 0.1, 2) == error_per_unbalance(1, 2, 0.3, 2));
+  CHECK(strain_of_overlap(1e5, stiffness, 1) == Approx(1e-3));
+}
+
+TEST_CASE("The error per unbalance grows as a packing goes soft, and has neither jumps nor ends", "[solver]") {
+  for (const int dimension : {2, 3}) {
+    const auto of_sliding = [&](double s) { return error_per_unbalance(s, 0, 0.3, dimension); };
+    const auto of_constraints = [&](double c) { return error_per_unbalance(1, c, 0.3, dimension); };
+    for (double x = 0.02; x < 1; x += 0.02) {
+      CAPTURE(dimension, x);
+      CHECK(of_sliding(x) >= of_sliding(x + 0.02));
+      CHECK(of_sliding(x) < 1.2 * of_sliding(x + 0.02));
+      CHECK(of_constraints(1 + x) >= of_constraints(1.02 + x));
+      CHECK(of_constraints(1 + x) < 1.2 * of_constraints(1.02 + x));
+      // The larger of what sliding and what few contacts leave soft.
+      CHECK(error_per_unbalance(x, 1 + x, 0.3, dimension) == std::max(of_sliding(x), of_constraints(1 + x)));
+    }
+    CHECK(of_sliding(0.6) > 2 * of_sliding(1));
+    CHECK(of_constraints(1) > 2 * of_constraints(2));
+    CHECK(of_sliding(0.01) == of_sliding(0));         // flow lags no more than at constant width
+    CHECK(of_constraints(0.8) == of_constraints(1));  // c = 0 is one that is not known
+    CHECK(error_per_unbalance(1, 2, 0.1, dimension) == of_constraints(2));
+    CHECK(error_per_unbalance(1, 2, 0.6, dimension) == Approx(2 * of_constraints(2)));  // damping hides lag in u
+  }
+  // In space soft modes follow later than in the plane.
   CHECK(error_per_unbalance(1, 1.1, 0.3, 3) == error_per_unbalance(1, 1.1, 0.3, 2));
-  CHECK(error_per_unbalance(0.64, 0, 0.3, 3) == Approx(0.4 / (0.64 * 0.64 * 0.64 * 0.8)));
-  CHECK(error_per_unbalance(1, 2, 0.7, 2) == Approx(0.7 / 0.3 * 0.4));
-  // x^(1/8) from the strain of the overlaps on, without an end.
+  CHECK(error_per_unbalance(0.6, 0, 0.3, 3) > 1.2 * error_per_unbalance(0.6, 0, 0.3, 2));
+}
+
+TEST_CASE("A long increment errs by a power of its strain, a start by what is new in its rate", "[solver]") {
   CHECK(error_growth(9.9e-4, 1e-3) == 1);
-  CHECK(error_growth(16e-3, 1e-3) == Approx(std::sqrt(2)));
-  CHECK(error_growth(0.256, 1e-3) == Approx(2));
-  // What a contact holds across its normal goes with its friction, without a jump.
-  CHECK(grip_of(0) == 0);
-  CHECK(grip_of(1e-6) < 1e-5);
-  CHECK(grip_of(0.5) > 0.7);
-  CHECK(grip_of(1e6) == Approx(1));
-  CHECK(unbalance_of_start(1, 1e-4, 1e-3, 16) == Approx(0.1 * 1.2 / (16 * std::pow(16, 0.375))));
+  CHECK(error_growth(2e-3, 1e-3) > 1);
+  CHECK(error_growth(6e-3, 1e-3) == Approx(error_growth(2e-3, 1e-3) * error_growth(3e-3, 1e-3)));
+  const double start = unbalance_of_start(1, 1e-4, 1e-3, 16);
+  CHECK(start > 0);
+  CHECK(unbalance_of_start(2, 1e-4, 1e-3, 16) == Approx(2 * start));
+  CHECK(unbalance_of_start(1, 2e-4, 2e-3, 16) == Approx(start));
+  CHECK(unbalance_of_start(1, 2e-4, 1e-3, 16) > 2 * start);
+  CHECK(unbalance_of_start(1, 1e-4, 1e-3, 32) < start / 2);  // faster than 1/n
   CHECK(unbalance_of_start(0, 1e-4, 1e-3, 1) == 0);
 }
 
-TEST_CASE("Increments keep below their estimate, and 35 of 36 to their tolerance", "[solver][slow]") {
-  int increments = 0, kept = 0;
+TEST_CASE("What a contact holds across its normal goes with its friction, without a jump", "[solver]") {
+  CHECK(grip_of(0) == 0);
+  CHECK(grip_of(1e-6) < 1e-5);
+  for (double friction = 0; friction < 1; friction += 0.01) {
+    CHECK(grip_of(friction) < grip_of(friction + 0.01));
+    CHECK(grip_of(friction + 0.01) < grip_of(friction) + 0.1);
+  }
+  CHECK(grip_of(1e6) == Approx(1));
+}
+
+TEST_CASE("Increments keep below their estimate, and nearly all to their tolerance", "[solver][slow]") {
+  Ratios to_tolerance;
   for (const double strain : {0.0, 1e-3, 1e-2}) {
     const Specimen s = dense_after(strain);
     for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
       for (const double size : {1e-6, 1e-5, 1e-4, 1e-3}) {
         CAPTURE(strain, size, direction(1, 1), direction(0, 1));
-        Rve rve(s);
-        const Response response = rve.apply(size * direction, 0);
-        const double error = (response.stress - resolved_stress(s, size * direction)).norm();
-        CHECK(error <= response.report.error_estimate);
-        CHECK(response.report.in_equilibrium);
-        ++increments;
-        kept += error <= response.report.allowed_error;
+        const Judged made = judged(s, size * direction);
+        CHECK(made.within_estimate());
+        CHECK(made.report.in_equilibrium);
+        to_tolerance.push_back(made.error / made.report.allowed_error);
       }
   }
-  CHECK(increments == 36);
-  CHECK(kept >= 35);
+  CHECK(to_tolerance.root_mean_square() < 0.6);
+  CHECK(to_tolerance.largest() < 1.5);
 }
 
 TEST_CASE("Nine of ten long increments of packings at rest keep below their estimate", "[solver][slow]") {
   // What slides on the way is not seen in the balance at the end.
-  int increments = 0, kept = 0;
+  Ratios to_estimate;
   for (const char* packing : {"dense", "medium", "soft"}) {
     const Specimen s = reference_specimen(packing);
     for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
       for (const double size : {1.2e-3, 2e-3, 3e-3, 5e-3, 8e-3}) {
-        Rve rve(s);
-        const Response response = rve.apply(size * direction, 0);
-        ++increments;
-        kept += (response.stress - resolved_stress(s, size * direction)).norm() <= response.report.error_estimate;
+        const Judged made = judged(s, size * direction);
+        to_estimate.push_back(made.error / made.report.error_estimate);
       }
   }
-  CHECK(increments == 60);
-  CHECK(kept >= 54);
+  CHECK(to_estimate.root_mean_square() < 0.35);
+  CHECK(to_estimate.share_below_one() >= 0.9);
 }
 
 TEST_CASE("Long increments of little friction and of wide spheres keep below an estimate that is of use",
           "[solver][slow]") {
   // Where the contacts slide, each lag on the way leaves an error of its own. Increments that end elsewhere when they
   // are made at half the rate, and cells that come apart, whose stress of nothing anyone finds, do not count.
-  int kept = 0;
-  std::vector<double> ratios;
+  Ratios to_estimate;
   for (const Specimen& s : {packed_grains(Shape::disc, 100, 2, 0.07), packed_grains(Shape::disc, 100, 2, 0.1),
                             packed_grains(Shape::sphere, 80, 4, 0.3)})
     for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
@@ -149,14 +174,12 @@ TEST_CASE("Long increments of little friction and of wide spheres keep below an 
         const Matrix3 truth = resolved_stress(s, size * direction, 8000);
         if ((resolved_stress(s, size * direction) - truth).norm() > response.report.allowed_error / 3) continue;
         if (truth.norm() < 0.01 * before) continue;
-        const double error = (response.stress - truth).norm();
-        kept += error <= response.report.error_estimate;
-        ratios.push_back(response.report.error_estimate / error);
+        to_estimate.push_back((response.stress - truth).norm() / response.report.error_estimate);
       }
-  REQUIRE(ratios.size() >= 12);
-  CHECK(double(kept) >= 0.975 * double(ratios.size()));  // with the mean lag instead 29 of 30 are
-  std::nth_element(ratios.begin(), ratios.begin() + long(ratios.size() / 2), ratios.end());
-  CHECK(ratios[ratios.size() / 2] < 15);
+  REQUIRE(to_estimate.size() >= 12);
+  CHECK(to_estimate.largest() <= 1);
+  std::nth_element(to_estimate.begin(), to_estimate.begin() + long(to_estimate.size() / 2), to_estimate.end());
+  CHECK(to_estimate[to_estimate.size() / 2] > 1.0 / 15);
 }
 
 TEST_CASE("What a coarser path lags by is made up for before an increment to a tolerance ends", "[solver]") {
@@ -166,37 +189,34 @@ TEST_CASE("What a coarser path lags by is made up for before an increment to a t
   for (int k = 0; k < 100; ++k) coarse.apply(2e-4 * biaxial_step, 0);
   s = coarse.specimen();
   s.solver.target_unbalanced = 0;
-  int told = 0;
+  double met = 0, increments = 0;
   const double lag = (coarse.stress() - resolved_stress(s, Matrix3::Zero())).norm();
   for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
     for (const double size : {1e-7, 1e-6, 1e-5, 1e-4}) {
       CAPTURE(size, direction(1, 1), direction(0, 1));
-      Rve rve(s);
-      const Response response = rve.apply(size * direction, 0);
-      const double error = (response.stress - resolved_stress(s, size * direction)).norm();
-      CHECK(response.report.allowed_error < 0.1 * lag);
-      CHECK(error <= response.report.error_estimate);
-      CHECK(error <= 2 * response.report.allowed_error);
-      told += response.report.tolerance_met;
-      CHECK(response.report.substeps < 3000);
+      const Judged made = judged(s, size * direction);
+      CHECK(made.report.allowed_error < 0.1 * lag);
+      CHECK(made.within_estimate());
+      CHECK(made.error <= 2 * made.report.allowed_error);
+      met += made.report.tolerance_met;
+      ++increments;
+      CHECK(made.report.substeps < 3000);
     }
-  CHECK(told >= 14);  // of 16: the estimate is above what is found
+  CHECK(met >= 0.85 * increments);  // the estimate is above what is found
 }
 
 TEST_CASE("A packing that few contacts hold is loaded from rest to its tolerance, like a dense one", "[solver]") {
   const Specimen s = reference_specimen("noroll");  // friction alone: near isostatic at 3 contacts a grain
-  int kept = 0, increments = 0;
+  Ratios to_tolerance;
   for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
     for (const double size : {1e-6, 1e-5, 3e-5, 1e-4}) {
       CAPTURE(size, direction(1, 1), direction(0, 1));
-      Rve rve(s);
-      const Response response = rve.apply(size * direction, 0);
-      const double error = (response.stress - resolved_stress(s, size * direction)).norm();
-      CHECK(error <= response.report.error_estimate);
-      kept += error <= response.report.allowed_error;
-      ++increments;
+      const Judged made = judged(s, size * direction);
+      CHECK(made.within_estimate());
+      to_tolerance.push_back(made.error / made.report.allowed_error);
     }
-  CHECK(kept >= increments - 1);
+  CHECK(to_tolerance.root_mean_square() < 0.5);
+  CHECK(to_tolerance.largest() < 1.5);
 }
 
 TEST_CASE("Constraints are those of the contacts that hold, over the motions of the grains that they hold",
@@ -223,23 +243,19 @@ TEST_CASE("Constraints are those of the contacts that hold, over the motions of 
 
 TEST_CASE("Of packings of low friction and of wide Hertz spheres most increments keep below their estimate",
           "[solver]") {
-  int increments = 0, kept = 0, told = 0, true_told = 0;
+  Ratios to_estimate, said_to_be_met;
   for (const Specimen& s : {packed_grains(Shape::disc, 80, 2, 0.02), packed_grains(Shape::disc, 80, 2, 0.05),
                             packed_grains(Shape::disc, 80, 2, 0.1), packed_grains(Shape::sphere, 80, 4, 0.3)})
     for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
       for (const double size : {1e-6, 1e-5, 1e-4}) {
-        Rve rve(s);
-        const Response response = rve.apply(size * direction, 0);
-        const double error = (response.stress - resolved_stress(s, size * direction)).norm();
-        ++increments;
-        kept += error <= response.report.error_estimate;
-        told += response.report.tolerance_met;
-        true_told += response.report.tolerance_met && error <= response.report.allowed_error;
+        const Judged made = judged(s, size * direction);
+        to_estimate.push_back(made.error / made.report.error_estimate);
+        if (made.report.tolerance_met) said_to_be_met.push_back(made.error / made.report.allowed_error);
       }
-  CHECK(increments == 36);
-  CHECK(kept >= 34);
-  CHECK(true_told >= told - 2);
-  CHECK(told >= 5);
+  CHECK(to_estimate.root_mean_square() < 0.6);
+  CHECK(to_estimate.share_below_one() >= 0.94);
+  CHECK(said_to_be_met.size() >= to_estimate.size() / 8);
+  CHECK(said_to_be_met.root_mean_square() < 0.8);
 }
 
 TEST_CASE("An increment that takes a specimen apart ends after a bounded number of sub-steps", "[solver]") {

@@ -3,7 +3,7 @@
 
 #include "rvelab/solver/assembly/affine_stiffness.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "tests/specimens.hpp"
+#include "tests/solver/laws.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -26,19 +26,9 @@ Matrix3 affine_stress(const Network& net, const Matrix3& strain) {
 }  // namespace
 
 TEST_CASE("The affine stiffness is the sum over contacts that move with the strain", "[solver]") {
-  Material hertz;
-  hertz.young_modulus = 1e9;
-  hertz.poisson_ratio = 0.3;
-  hertz.friction = 0.5;
-  const std::vector<Specimen> specimens = {
-      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
-      disordered(Shape::disc, 9, hertz, Law::hertz_mindlin, 0.51, 6),
-      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
-      disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4),
-      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_stiffness, 0.52, 8)};
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
-  for (const Specimen& start : specimens) {
+  for (const Specimen& start : disordered_of_each_law()) {
     const int d = start.cell.dimension;
     Rve rve(start);
     // A turned frame: spin moves it, the answer is asked for in the laboratory's.

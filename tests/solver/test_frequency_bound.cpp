@@ -18,7 +18,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
-#include "tests/specimens.hpp"
+#include "tests/solver/laws.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -136,13 +136,7 @@ class StiffNetwork {
 };
 
 Material material_for(Law law, double tangential_over_normal) {
-  Material m = linear_material(2e6, tangential_over_normal * 2e6, 0.5);
-  if (law == Law::hertz_mindlin) {
-    m = Material();
-    m.young_modulus = 1e9;
-    m.poisson_ratio = 0.3;
-    m.friction = 0.5;
-  }
+  Material m = law == Law::hertz_mindlin ? hertz_material() : linear_material(2e6, tangential_over_normal * 2e6, 0.5);
   m.rolling_stiffness = 0.5;
   m.rolling_friction = 0.1;
   return m;
@@ -225,17 +219,7 @@ TEST_CASE("Two equal grains without friction have the frequency of the bound its
 }
 
 TEST_CASE("Row sums that collisions leave out would have asked for no shorter step", "[solver]") {
-  Material hertz;
-  hertz.young_modulus = 1e9;
-  hertz.poisson_ratio = 0.3;
-  hertz.friction = 0.5;
-  const std::vector<Specimen> specimens = {
-      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
-      disordered(Shape::disc, 9, hertz, Law::hertz_mindlin, 0.51, 6),
-      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
-      disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4),
-      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_stiffness, 0.52, 8)};
-  for (const Specimen& start : specimens) {
+  for (const Specimen& start : disordered_of_each_law()) {
     for (const double speed : {1e-6, 1e-3, 0.1}) {
       CAPTURE(int(start.shape), int(start.contact.law), speed);
       Model model;

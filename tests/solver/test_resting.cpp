@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "rvelab/error.hpp"
-#include "tests/specimens.hpp"
+#include "tests/solver/laws.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -18,12 +18,8 @@ std::vector<Specimen> resting_configurations() {
   rolling.rolling_friction = 0.2;
   all.push_back(disordered(Shape::disc, 9, rolling, Law::linear_stiffness, 0.52, 3));
   all.back().contact.rolling = true;
-  Material hertz;
-  hertz.young_modulus = 1e9;
-  hertz.poisson_ratio = 0.3;
-  hertz.friction = 0.5;
   all.push_back(disordered(Shape::ellipse, 9, rolling, Law::linear_stiffness, 0.52, 6));
-  all.push_back(disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4));
+  all.push_back(disordered(Shape::sphere, 5, hertz_material(), Law::hertz_mindlin, 0.51, 4));
   all.back().damping.dashpot = Dashpot::viscoelastic;
   all.back().damping.normal_coefficient = 1e3;
   all.push_back(

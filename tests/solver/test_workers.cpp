@@ -22,21 +22,30 @@ namespace {
 using Sharing = Workers::Sharing;
 constexpr Sharing each_sharing[] = {Sharing::measured, Sharing::always, Sharing::never};
 
-/// Of so many calls of ten pieces, those in which other threads than the caller's made some.
-template <class Piece>
-long shared_calls(Workers& workers, long calls, const Piece& piece) {
+using Clock = std::chrono::steady_clock;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+/// Whether it comes true within so long.
+template <class Condition>
+bool comes_true(const Condition& condition, microseconds patience = milliseconds(10'000)) {
+  const auto end = Clock::now() + patience;
+  while (!condition() && Clock::now() < end) std::this_thread::yield();
+  return condition();
+}
+
+/// Whether another thread comes to a call of ten pieces, in each of which the caller waits for it; its first piece
+/// takes it that long.
+bool another_comes(Workers& workers, microseconds patience, milliseconds away) {
   const auto caller = std::this_thread::get_id();
-  long shared = 0;
-  for (long call = 0; call < calls; ++call) {
-    std::atomic<bool> other{false};
-    workers.for_each(10, [&](std::size_t) {
-      const bool away = std::this_thread::get_id() != caller;
-      if (away) other = true;
-      piece(away);
-    });
-    shared += other;
-  }
-  return shared;
+  std::atomic<bool> came{false};
+  workers.for_each(10, [&](std::size_t) {
+    if (std::this_thread::get_id() == caller)
+      comes_true([&] { return came.load(); }, patience);
+    else if (!came.exchange(true))
+      std::this_thread::sleep_for(away);
+  });
+  return came;
 }
 
 }  // namespace
@@ -122,24 +131,36 @@ TEST_CASE("a failure of a piece that others come after is thrown again, and nobo
   }
 }
 
-TEST_CASE("a team whose meetings cost more than the work goes on alone", "[solver]") {
-  // A millisecond or two alone; a thread that comes is off its core for 10 ms in the middle of a piece. Asleep, so that
-  // it does not matter what else the machine does.
-  const auto piece = [](bool away) { std::this_thread::sleep_for(std::chrono::microseconds(away ? 10'000 : 100)); };
+TEST_CASE("a team whose meetings cost more than the work goes on alone for a while", "[solver]") {
+  // A thread that is off its core for 20 ms costs the caller as much, who works alone for 20 times as long after it: in
+  // short calls, for a long one is shared all the same.
   Workers workers(2);
   workers.sharing = Sharing::always;
-  const long always = shared_calls(workers, 30, piece);
-  CHECK(always > 10);
+  auto begin = Clock::now();
+  do {
+    begin = Clock::now();
+    REQUIRE(another_comes(workers, milliseconds(1000), milliseconds(20)));
+  } while (Clock::now() - begin > milliseconds(60));  // it came so late that the meeting cost little beside that
   workers.sharing = Sharing::measured;
-  CHECK(shared_calls(workers, 300, piece) < 10 * always / 4);
-  workers.sharing = Sharing::never;
-  CHECK(shared_calls(workers, 100, piece) == 0);
+  const auto end = Clock::now() + milliseconds(200);
+  int alone = 0;
+  while (Clock::now() < end) {
+    begin = Clock::now();
+    const bool came = another_comes(workers, microseconds(100), milliseconds(0));
+    if (Clock::now() - begin > microseconds(1900)) continue;
+    CHECK(!came);
+    ++alone;
+  }
+  CHECK(alone > 0);
 }
 
-TEST_CASE("a team that gains by its meetings goes on together", "[solver]") {
-  const auto piece = [](bool) { std::this_thread::sleep_for(std::chrono::microseconds(500)); };
+TEST_CASE("a team that gains by its meetings goes on together, unless it is told never to", "[solver]") {
   Workers workers(2);
-  CHECK(shared_calls(workers, 100, piece) > 90);
+  int together = 0;
+  for (int call = 0; call < 100; ++call) together += another_comes(workers, milliseconds(3), milliseconds(0));
+  CHECK(together > 90);
+  workers.sharing = Sharing::never;
+  for (int call = 0; call < 3; ++call) CHECK(!another_comes(workers, milliseconds(1), milliseconds(0)));
 }
 
 TEST_CASE("the failure of the lowest piece is thrown when all are done, and the threads work on", "[solver]") {
@@ -166,26 +187,28 @@ TEST_CASE("the failure of the lowest piece is thrown when all are done, and the 
 }
 
 TEST_CASE("a thread that is far behind is helped", "[solver]") {
+  // Of a hundred pieces half are its own: it stays in the first of them until all others are made.
   Workers workers(2);
-  std::vector<std::thread::id> by(100);
+  std::atomic<int> by_caller{0}, by_other{0};
   const auto caller = std::this_thread::get_id();
-  workers.for_each(100, [&](std::size_t k) {
-    by[std::size_t(k)] = std::this_thread::get_id();
-    if (by[std::size_t(k)] != caller) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  workers.for_each(100, [&](std::size_t) {
+    if (std::this_thread::get_id() == caller)
+      ++by_caller;
+    else if (++by_other == 1)
+      CHECK(comes_true([&] { return by_caller == 99; }));
   });
-  CHECK(std::count(by.begin(), by.end(), caller) > 90);
+  CHECK(by_caller + by_other == 100);
 }
 
 TEST_CASE("pieces in turn begin in the order of their numbers", "[solver]") {
   Workers workers(2);
   std::atomic<long> second{-1};
   workers.for_each_in_turn(200, [&](std::size_t k) {
-    if (k > 0) {
-      long none = -1;
+    long none = -1;
+    if (k > 0)
       second.compare_exchange_strong(none, long(k));
-      return;
-    }
-    for (int wait = 0; wait < 10000 && second < 0; ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    else
+      comes_true([&] { return second >= 0; });
   });
   CHECK(second == 1);  // in parts of their own it would be 100
 }
