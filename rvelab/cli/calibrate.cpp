@@ -17,7 +17,6 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -25,6 +24,7 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/sharing.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/publish.hpp"
@@ -387,7 +387,7 @@ void run_calibration(const CalibrateArguments& arguments) {
   Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   add_tension(arguments, specimens.size(), plan);
   for (std::size_t k = 0; k < plan.protocols.size(); ++k)
-    tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimens[plan.specimen_of[k]]));
+    warn_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimens[plan.specimen_of[k]]));
   const std::size_t tests = plan.protocols.size();
   std::vector<KeptTest> kept;
   if (!arguments.folder.empty()) {

@@ -14,11 +14,11 @@
 #include <thread>
 
 #include "rvelab/calibrate/calibrate.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/sharing.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -79,7 +79,7 @@ int expect_specimens(const Ensemble& ensemble) {
   for (std::size_t k = 0; k < ensemble.files.size(); ++k) {
     const Specimen specimen = io::read_specimen(ensemble.files[k]);
     for (const protocol::Protocol& protocol : ensemble.protocols)
-      tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
+      warn_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
     const auto [found, is_new] = first.emplace(io::digest(specimen), k);
     if (!is_new)
       throw InputError(ensemble.files[k] + " holds the same specimen as " + ensemble.files[found->second] +

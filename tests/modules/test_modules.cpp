@@ -138,8 +138,8 @@ TEST_CASE("each module includes only those above it in the list of its README") 
 TEST_CASE("no header includes itself by way of others") {
   std::map<std::string, bool> done;  // false: under way
   const auto visit = [&](const auto& self, const std::string& file, const std::string& from) -> void {
-    const auto [place, first] = done.emplace(file, false);
-    if (!first && !place->second) FAIL_CHECK(from << " includes " << file << ", which leads back to it");
+    const auto [entry, first] = done.emplace(file, false);
+    if (!first && !entry->second) FAIL_CHECK(from << " includes " << file << ", which leads back to it");
     if (!first) return;
     for (const std::string& included : includes_of(file)) self(self, included, file);
     done[file] = true;
@@ -172,8 +172,8 @@ TEST_CASE("no two types of one namespace have one name") {
       std::string whole;
       for (const std::string& space : spaces) whole += space + "::";
       ++types;
-      const auto [place, first] = found.emplace(whole + name, file);
-      if (!first) FAIL_CHECK(whole << name << " is declared in " << place->second << " and in " << file);
+      const auto [entry, first] = found.emplace(whole + name, file);
+      if (!first) FAIL_CHECK(whole << name << " is declared in " << entry->second << " and in " << file);
     }
   }
   CHECK(types > 0);
