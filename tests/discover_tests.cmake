@@ -1,5 +1,5 @@
-# Writes OUTPUT, the list of tests of a Catch2 EXECUTABLE for ctest: one entry per TEST_CASE of ROOM, labelled with the
-# room, its tags, and `quick` unless it is tagged [slow]; those that are have a COST, in seconds: ctest begins with the
+# Writes OUTPUT, the list of tests of a Catch2 EXECUTABLE for ctest: one entry per TEST_CASE of MODULE, labelled with the
+# module, its tags, and `quick` unless it is tagged [slow]; those that are have a COST, in seconds: ctest begins with the
 # dearest, and keeps no times itself of tests whose names hold blanks. Catch2 2.13 lists no tags beside whole names, so
 # the names are asked for tag by tag. LIST_NAMES: the options that make this Catch2 print names only; RUN_OPTIONS: those
 # that each test is run with.
@@ -50,7 +50,7 @@ endforeach()
 
 set(script "")
 foreach(test IN LISTS all)
-  set(labels ${ROOM})
+  set(labels ${MODULE})
   foreach(tag IN LISTS plain_tags)
     if(test IN_LIST tagged_${tag})
       list(APPEND labels ${tag})
@@ -65,8 +65,8 @@ foreach(test IN LISTS all)
   list(REMOVE_DUPLICATES labels)
   # Commas and brackets mean something in a Catch2 test specification.
   string(REGEX REPLACE "([,${open}])" "\\\\\\1" pattern "${test}")
-  string(APPEND script "add_test([==[${ROOM}: ${test}]==] [==[${EXECUTABLE}]==] [==[${pattern}]==] ${RUN_OPTIONS})\n"
-                       "set_tests_properties([==[${ROOM}: ${test}]==] PROPERTIES LABELS [==[${labels}]==] COST ${cost})\n")
+  string(APPEND script "add_test([==[${MODULE}: ${test}]==] [==[${EXECUTABLE}]==] [==[${pattern}]==] ${RUN_OPTIONS})\n"
+                       "set_tests_properties([==[${MODULE}: ${test}]==] PROPERTIES LABELS [==[${labels}]==] COST ${cost})\n")
 endforeach()
 string(REPLACE "${semicolon}" ";" script "${script}")
 string(REPLACE "${open}" "[" script "${script}")

@@ -24,7 +24,7 @@ std::string text(double value) {
 
 std::string entry(int i, int j) { return std::string("dH_") + axis[i] + axis[j]; }
 
-// dH with its z-components cleared in 2D, once they are seen to be round-off.
+// dH, in 2D with its z-components set to zero if they are round-off.
 Matrix3 checked_gradient(int dimension, const Matrix3& gradient) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
@@ -51,7 +51,7 @@ Matrix3 checked_gradient(int dimension, const Matrix3& gradient) {
                          "; it must be finite and > 0: apply a smaller increment");
 }
 
-// The determinant alone does not tell: a shear of 1e17 keeps it at one, and squares of 1e200 are beyond all numbers.
+// The determinant alone is not sufficient: a shear of 1e17 keeps it at one, and squares of 1e200 overflow.
 [[noreturn]] void refuse_stretch(int k, double stretch, const Matrix3& gradient) {
   throw InvalidIncrement(std::string("U_") + axis[k] + axis[k] + " = " + text(stretch) +
                          ", the stretch of I + dH along " + axis[k] + ", with entries of dH up to " +
@@ -118,7 +118,7 @@ FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradien
   if (!(determinant > 0.0) || !std::isfinite(determinant)) refuse_determinant(determinant);
   // I + Q^T dH Q rather than Q^T (I + dH) Q, with Q at its most orthogonal: det(Q)^2 - 1 of round-off would
   // otherwise inflate the cell at every increment, and push a rotation over the limit of `rigid`.
-  // A frame that never turned needs neither.
+  // A frame without rotation needs neither.
   Matrix3 in_frame = gradient;
   if (!is_identity(cell.rotation)) {
     const Matrix3 frame = renormalised(cell.rotation);
@@ -144,7 +144,7 @@ Matrix3 with_volume_ratio(const Matrix3& displacement_gradient, double ratio, in
 
 void turn_frame(Cell& cell, const Matrix3& frame_rotation) {
   if (!is_identity(frame_rotation)) cell.rotation = (cell.rotation * frame_rotation).eval();
-  cell.rotation.array() += 0.0;  // no -0, so that quarter turns come back to the same bits
+  cell.rotation.array() += 0.0;  // no -0, so that four quarter turns give the same bits
   if (++cell.increments < increments_between_renormalisations) return;
   cell.rotation = renormalised(cell.rotation);
   cell.increments = 0;
@@ -156,7 +156,7 @@ Matrix3 renormalised(const Matrix3& rotation) {
 
 Image wrap(const Cell& cell, Vector3& position) {
   Image image{};
-  // L is upper triangular: vector k moves coordinates up to k only, so what is settled stays settled.
+  // L is upper triangular: vector k changes only coordinates up to k, so wrapped coordinates stay wrapped.
   for (int k = cell.dimension - 1; k >= 0; --k) image[k] = wrap_along(cell.lattice, k, position);
   return image;
 }
@@ -179,11 +179,11 @@ Vector3 heights(const Cell& cell) {
 
 TriangularFactors triangular_factors(const Matrix3& matrix) {
   TriangularFactors factors{Matrix3::Identity(), matrix};
-  // The pivot's sign is put right by the neighbouring row, so that in 2D the z-row never takes part.
+  // The sign of the pivot is corrected by the neighbouring row, so that in 2D the z-row does not change.
   annihilate(factors, 0, 1);
   annihilate(factors, 0, 2);
   annihilate(factors, 1, 2);
-  // Three rotations leave R off the orthogonal matrices by some units of round-off, which would add up in the frame.
+  // After three rotations R deviates from orthogonality by some units of round-off, which would add up in the frame.
   if (!is_identity(factors.rotation)) factors.rotation = renormalised(factors.rotation);
   // Adding zero turns -0 into +0: equal states then are equal bit for bit.
   factors.rotation.array() += 0.0;

@@ -1,9 +1,9 @@
 // The periodic cell: lattice matrix, frame, deformation, wrapping, reduction.
 //
-// This room knows geometry only: no grains, contacts, forces or time.
+// This module contains only geometry: no grains, contacts, forces or time.
 //
 // Conventions. The columns of the lattice matrix L are the cell vectors a, b, c; L is upper triangular with positive
-// diagonal and is written in the cell frame. The rotation Q takes cell-frame vectors to the laboratory:
+// diagonal and is written in the cell frame. The rotation Q maps cell-frame vectors to the laboratory frame:
 // v_lab = Q v_cell, sigma_lab = Q sigma_cell Q^T. In 2D the third cell vector is (0, 0, thickness): it carries the
 // volume and is never periodic, deformed or reduced. All lengths in m. (Qu, Feng and Wang, eq. 1-9.)
 #pragma once
@@ -43,7 +43,7 @@ FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradien
 /// det(I + dH) = `ratio` to round-off. Throws InvalidIncrement if det(I + dH) <= 0. `ratio` > 0, of order one.
 Matrix3 with_volume_ratio(const Matrix3& displacement_gradient, double ratio, int dimension);
 
-/// Turns the frame by R and counts the increment; every 100th one renormalises Q by one Newton step.
+/// Rotates the frame by R and counts the increment; every 100th one renormalises Q by one Newton step.
 void turn_frame(Cell& cell, const Matrix3& frame_rotation);
 
 /// Newton step towards the nearest orthogonal matrix: Q <- Q (3 I - Q^T Q) / 2.
@@ -62,8 +62,8 @@ Vector3 heights(const Cell& cell);
 /// Length of the shortest non-zero lattice vector, m. In 2D only a and b count.
 double shortest_vector(const Cell& cell);
 
-/// The simple shear v_i(x_k), to either side, from which on a height of the reduced cell is below `least_height` (m);
-/// infinite where none up to `most` does that. A cell with a vector along i never gets thin.
+/// The least simple shear v_i(x_k), in either direction, at which a height of the reduced cell is below `least_height`
+/// (m); infinite if no shear up to `most` does this. A cell with a vector along i never becomes thin.
 double shear_until_thin(const Cell& cell, int i, int k, double least_height, double most);
 
 /// A change of basis: L_new = R^T L N with N unimodular (det +1). Every stored cell-frame vector v becomes R^T v, an
@@ -73,7 +73,7 @@ struct Reduction {
   Eigen::Matrix3i inverse_basis = Eigen::Matrix3i::Identity();  ///< N^-1
   Matrix3 rotation = Matrix3::Identity();                       ///< R
   Matrix3 lattice = Matrix3::Identity();                        ///< the reduced lattice
-  bool changed = false;  ///< false: the basis is already reduced (to the tolerance) and nothing is to be done
+  bool changed = false;  ///< false: the basis is already reduced (to the tolerance)
 };
 
 /// Full reduction of the lattice: Lagrange-Gauss in 2D, a Minkowski-reduced basis in 3D, with a relative tolerance
@@ -90,10 +90,10 @@ struct TriangularFactors {
 };
 
 /// Factors M (any unit). The first two diagonal entries of U are positive, the third has the sign of det M; a
-/// singular M gives a zero, negative or NaN diagonal entry, which the caller checks. Only + - * / sqrt are used. A
-/// rotation is made only where an entry below the diagonal is not zero or a diagonal entry is negative: an upper
-/// triangular M with positive diagonal comes back untouched with R = I, a signed permutation comes out exactly, and
-/// a matrix with z-components (0, 0, m) keeps them. (Golub and Van Loan, Matrix Computations, section 5.1.8.)
+/// singular M gives a zero, negative or NaN diagonal entry, which the caller checks. Only + - * / sqrt are used. Only
+/// a nonzero entry below the diagonal or a negative diagonal entry causes a rotation: an upper triangular M with
+/// positive diagonal is unchanged with R = I, a signed permutation is exact, and a matrix with z-components (0, 0, m)
+/// keeps them. (Golub and Van Loan, Matrix Computations, section 5.1.8.)
 TriangularFactors triangular_factors(const Matrix3& matrix);
 
 /// Square (2D) or simple cubic (3D) cell of the given volume (m^3), axes along the laboratory's.

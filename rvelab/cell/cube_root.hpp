@@ -1,10 +1,9 @@
-// A root that the standard library does not promise to the bit.
+// A cube root with the same bits on every machine, which the standard library does not guarantee.
 #pragma once
 
 namespace rvelab {
 
-/// Cube root of a positive number by Newton's method: the same bits on every machine, which the library's does not
-/// promise.
+/// Cube root of a positive number by Newton's method.
 inline double cube_root(double value) {
   double scale = 1.0;
   while (value >= 8.0) {

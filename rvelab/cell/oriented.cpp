@@ -1,9 +1,9 @@
-// Starting cells: axis-aligned, and those oriented so that a flow whose principal axes are known never makes them thin.
+// Initial cells: axis-aligned, and those oriented so that a flow with known principal axes never makes them thin.
 //
-// The oriented ones are Minkowski embeddings of the integers of a totally real number field: the product of the
-// coordinates of a vector is a norm, at least one in size for all but zero, and a diagonal flow of constant volume
-// keeps it. By the inequality of means every vector is then at least sqrt(d) long where the cell has the volume
-// sqrt(discriminant): sqrt(2)/5^(1/4) = 0.9457 of V^(1/2) in 2D, sqrt(3)/7^(1/3) = 0.9054 of V^(1/3) in 3D, for ever.
+// The oriented ones are Minkowski embeddings of the integers of a totally real number field. The product of the
+// coordinates of a vector is a norm, with an absolute value of at least one except for zero, and a diagonal flow of
+// constant volume conserves it. By the inequality of means every vector then has at least the length sqrt(d) in a cell
+// of volume sqrt(discriminant): sqrt(2)/5^(1/4) = 0.9457 of V^(1/2) in 2D, sqrt(3)/7^(1/3) = 0.9054 of V^(1/3) in 3D.
 // Declared in cell.hpp.
 #include <cmath>
 #include <cstdio>

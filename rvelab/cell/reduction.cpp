@@ -5,7 +5,7 @@
 //
 // Vectors are shortened in place, the longer by the shorter, never reordered: every step adds multiples of other
 // basis vectors, so det N = +1 throughout, and a cell whose basis is reduced in some order keeps its axes. A vector is
-// replaced only by one shorter by more than the tolerance, so that ties at one half end. Declared in cell.hpp.
+// replaced only by one shorter by more than the tolerance, so that ties at one half terminate. Declared in cell.hpp.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -37,10 +37,10 @@ void check_lattice(const Matrix3& lattice) {
   if (!(lattice.diagonal().minCoeff() > 0.0))
     refuse(lattice, "the diagonal must be > 0; give three independent cell vectors in right-handed order");
   if (lattice(1, 0) != 0.0 || lattice(2, 0) != 0.0 || lattice(2, 1) != 0.0)
-    refuse(lattice, "entries below the diagonal must be zero; turn the lattice into its cell frame");
+    refuse(lattice, "entries below the diagonal must be zero; rotate the lattice into its cell frame");
 }
 
-// A basis of the lattice L, as integers N and as vectors L N; always formed anew from L, so that no error adds up.
+// A basis of the lattice L, as integers N and as vectors L N; always computed from L, so that no error adds up.
 struct Basis {
   const Matrix3& lattice;
   IntegerMatrix integers = IntegerMatrix::Identity();
@@ -102,7 +102,7 @@ bool shorten_by_plane(Basis& basis, int k, int i, int j) {
 
 // One step of the greedy algorithm; false when the basis is reduced.
 bool shorten(Basis& basis, int dimension) {
-  int order[3] = {0, 1, 2};  // by length; equal ones keep their places
+  int order[3] = {0, 1, 2};  // by length; equal ones keep their order
   const auto sort_pair = [&](int p) {
     if (basis.squared(order[p + 1]) < basis.squared(order[p])) std::swap(order[p], order[p + 1]);
   };
@@ -178,7 +178,7 @@ double shear_until_thin(const Cell& cell, int i, int k, double least_height, dou
     Cell sheared = cell;
     double gamma = 0;
     apply_reduction(sheared, reduced(sheared));
-    // A vector as short as that, of height y, is so while the shear goes on by more than least_height/y > 1.
+    // A vector that short, of height y, stays short while the shear continues by more than least_height/y > 1.
     while (gamma < most && gamma < least && heights(sheared).minCoeff() >= least_height) {
       const double step = std::fmax(0.05, 0.005 * gamma);
       gamma += step;
@@ -197,7 +197,7 @@ double shear_until_thin(const Cell& cell, int i, int k, double least_height, dou
 double shortest_vector(const Cell& cell) {
   const Matrix3 lattice = reduced(cell).lattice;
   // The shortest vector of a reduced basis is a shortest one of the lattice, but for the tolerance: sums and
-  // differences are tried too. One of each pair v, -v is enough.
+  // differences are checked too. One of each pair v, -v is sufficient.
   const int depth = cell.dimension == 3 ? 1 : 0;
   double least = std::numeric_limits<double>::infinity();
   for (int n2 = 0; n2 <= depth; ++n2)

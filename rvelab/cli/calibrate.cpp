@@ -17,11 +17,11 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/sharing.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/publish.hpp"
@@ -365,7 +365,7 @@ std::vector<RecordedTest> recorded(const Plan& plan, const std::vector<Specimen>
   for (std::size_t k = 0; k < plan.protocols.size(); ++k) {
     const Specimen& specimen = specimens[plan.specimen_of[k]];
     tests.push_back({{plan.name(k, specimens.size() > 1), &plan.protocols[k], [&specimen] { return specimen; }}, ""});
-    tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimen));
+    warn_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimen));
   }
   if (folder.empty()) return tests;
   for (std::size_t k = 0; k < tests.size(); ++k)

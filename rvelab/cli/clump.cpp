@@ -60,7 +60,7 @@ void add_clump(CLI::App& app) {
   add_force(command, arguments->force);
   add_json(command, arguments->json);
   command.footer(
-      "Spheres lie within the surface and touch it. How far the clump is from the grain is told: distances over the\n"
+      "Spheres lie within the surface and touch it. The program prints deviations of the clump: distances over the\n"
       "radius of the sphere of the grain's volume, the volume of the spheres' union, principal moments of inertia of\n"
       "clump over grain at equal volume. A packed clump has the size of its grading, whatever the unit here.\n"
       "Example:\n"

@@ -1,4 +1,4 @@
-// Tables of text, and numbers in the digits that mean something.
+// Tables of text, and numbers with their significant digits.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace rvelab::cli {
 std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left = 1000,
                     std::size_t width = 120);
 
-/// A cell of a CSV table: quoted where it must be; the shortest number that reads back, nothing for NaN.
+/// A cell of a CSV table: quoted if necessary; the shortest number that reads back, empty for NaN.
 std::string csv_cell(const std::string& text);
 std::string csv_cell(double value);
 
-/// A value in the digits that its error, or half of its interval, leaves it (ensemble::with_error).
+/// A value with the digits that its error, or half of its interval, allows (ensemble::with_error).
 std::string in_digits_of(double value, double error);
 
 /// So many significant digits, without zeros at the end: 0.1874, 83682, 100e3, 35.25e6; "-" for NaN.
 std::string in_digits(double value, int digits);
 
-/// An angle, degrees, in three digits: 32.0, as figures have it.
+/// An angle, degrees, in three digits: 32.0, as in figures.
 std::string angle_in_digits(double degrees);
 
 /// Two significant digits; "-" for NaN.

@@ -96,7 +96,7 @@ void add_critical(CLI::App& app) {
   add_json(command, arguments->json);
   command.footer(
       "logarithmic: e_c = Gamma - lambda ln(p/1 kPa); power: e_c = Gamma - lambda (p/101.325 kPa)^0.7 (Li and Wang\n"
-      "1998); deviation: root mean square of e less e_c. state_parameter: void ratio at the start less e_c there "
+      "1998); deviation: root mean square of e minus e_c. state_parameter: void ratio at the start minus e_c there "
       "(Been\n"
       "and Jefferies 1985), by the line with the smaller deviation. void_ratio_change, from the first half of those\n"
       "records to the second, should be near zero.\n\n"

@@ -11,9 +11,9 @@
 #include <optional>
 
 #include "rvelab/calibrate/calibrate.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/sharing.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -67,7 +67,7 @@ int expect_specimens(const Ensemble& ensemble) {
   for (std::size_t k = 0; k < ensemble.files.size(); ++k) {
     const Specimen specimen = io::read_specimen(ensemble.files[k]);
     for (const protocol::Protocol& protocol : ensemble.protocols)
-      tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
+      warn_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
     digests.push_back(io::digest(specimen));
     expect_another(ensemble.files, digests);
     if (k > 0 && specimen.cell.dimension != dimension)

@@ -68,7 +68,7 @@ void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
     if (std::string(std::istreambuf_iterator<char>(input), {}) != text)
       throw InputError(own +
                        ": is of another fit; allowed with --resume: the same options (--tests may grow); give "
-                       "them, or another folder, or start anew with --force");
+                       "them, or another folder, or start again with --force");
     return;
   }
   io::expect_output(own, arguments.force, {}, ", --resume to go on with the fit");
@@ -234,7 +234,7 @@ void add_fit(CLI::App& app) {
                      "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
   add_set(command, arguments->settings, "stage.compression.to_strain=0.05");
   add_threads(command, arguments->threads, "tests at a time; default: one per core");
-  command.add_flag("--force", arguments->force, "start anew in a folder that holds a fit");
+  command.add_flag("--force", arguments->force, "start again in a folder that holds a fit");
   command.add_flag("--resume", arguments->resume, "continue a fit that was stopped, or spend more tests")
       ->excludes("--force");
   add_json(command, arguments->json);

@@ -1,4 +1,4 @@
-// What `rvelab fit` is asked for: one protocol with targets on the command line, or a file of several measured tests.
+// The input of `rvelab fit`: one protocol with targets on the command line, or a file of several measured tests.
 #pragma once
 
 #include <optional>
@@ -19,8 +19,8 @@ struct FitArguments {
   bool same_specimens = false, force = false, resume = false, json = false;
 };
 
-/// The setup, checked: all of it is known before the first test. Takes what a file says of `arguments` that were not
-/// given (tests) into them. InputError for a mistake of either.
+/// The complete, checked setup before the first test. Arguments that were not given (tests) get the values of the file.
+/// InputError for an error in either.
 FitSetup setup_of(FitArguments& arguments);
 
 }  // namespace rvelab::cli

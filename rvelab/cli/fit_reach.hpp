@@ -1,4 +1,4 @@
-// Whether the tests of a fit go as far as the curves that were measured.
+// Checks that the tests of a fit cover the measured curves.
 #pragma once
 
 #include "rvelab/cli/fit_tests.hpp"
@@ -6,8 +6,8 @@
 
 namespace rvelab::cli {
 
-/// InputError for a curve that begins before or ends behind the stage it is compared with, as far as the protocol says
-/// where that begins and ends: no test could give its points.
+/// InputError for a curve that begins before or ends after the stage with which it is compared, if the protocol gives
+/// begin and end of the stage: no test could reproduce its points.
 void expect_reach(const ComparedTest& compared, const protocol::Protocol& protocol);
 
 }  // namespace rvelab::cli

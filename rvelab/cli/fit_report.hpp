@@ -1,4 +1,4 @@
-// What `rvelab fit` prints and writes.
+// The output of `rvelab fit`.
 #pragma once
 
 #include <string>
@@ -17,18 +17,18 @@ struct FitOutcome {
   double wall_seconds = 0;
 };
 
-/// Prints the posterior; into the folder go fit.json, fit.csv (one row a test), with measured curves curves.csv, and
-/// with predictions predictions.csv.
+/// Prints the posterior and writes to the folder fit.json, fit.csv (one row per test), for measured curves curves.csv,
+/// and for predictions predictions.csv.
 void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::string& folder, bool json);
 
-/// What was measured beside what the parameters found give: a table, rows of predictions.csv, and "predictions" of
-/// fit.json. A deviation is over sqrt(e^2 + s^2), the standard error of what was measured and the scatter of the
+/// Measurements and predictions with the fitted parameters: a table, rows of predictions.csv, and "predictions" of
+/// fit.json. A deviation is over sqrt(e^2 + s^2), the standard error of the measurement and the scatter of the
 /// predictions (specimens and parameters).
 std::string predictions_text(const FitSetup& setup, const std::vector<FitResult>& predictions);
 std::string predictions_csv(const FitSetup& setup, const std::vector<FitResult>& predictions);
 Json predictions_json(const FitSetup& setup, const std::vector<FitResult>& predictions);
 
-/// Prints means and standard errors over the specimens at each point; sweep.csv goes into the folder.
+/// Prints means and standard errors over the specimens at each point, and writes sweep.csv to the folder.
 void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, const std::vector<FitResult>& results,
                   const std::string& folder, bool json);
 

@@ -8,10 +8,10 @@
 #include <map>
 #include <optional>
 
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/fit_reach.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/pack/read_recipe.hpp"
@@ -162,7 +162,7 @@ std::optional<FitResult> kept(const std::string& path, const FitTest& test) {
         json.at("values").get<std::vector<double>>() == std::vector<double>(test.values.begin(), test.values.end()) &&
         json.at("specimen").get<std::size_t>() == test.specimen + 1;
     if (!same)
-      throw InputError(path + ": is of another test; allowed with --resume: the same fit; start anew with --force");
+      throw InputError(path + ": is of another test; allowed with --resume: the same fit; start again with --force");
     return FitResult{read_numbers(json.at("measures")), read_numbers(json.at("curves")),
                      read_features(json.at("features")), json.at("failure").get<std::string>()};
   } catch (const Json::exception&) {
@@ -201,10 +201,10 @@ void expect_runnable(const FitSetup& setup) {
                          "protocol");
       const protocol::Protocol protocol = protocol_of(setup, compared, values);
       expect_reach(compared, protocol);
-      if (!setup.recipe.empty()) tell_of_units(setup.recipe, pack::read_recipe(setup.recipe, of_packing).doubts);
-      tell_of_units(compared.protocol, protocol.doubts);
+      if (!setup.recipe.empty()) warn_of_units(setup.recipe, pack::read_recipe(setup.recipe, of_packing).doubts);
+      warn_of_units(compared.protocol, protocol.doubts);
       for (const Specimen& specimen : setup.specimens)
-        tell_of_units(compared.protocol, protocol::unusual_in(protocol, specimen));
+        warn_of_units(compared.protocol, protocol::unusual_in(protocol, specimen));
     }
   }
 }

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/cli/tell_of_sizes.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
@@ -60,7 +59,7 @@ Vector3 edges_in(const std::string& text) {
   return edges;
 }
 
-/// A snapshot says all of its specimen itself.
+/// A snapshot contains its complete specimen.
 Specimen from_snapshot(const ImportArguments& arguments) {
   const std::string& file = arguments.inputs[0];
   const auto refuse = [&](const std::string& given) {
@@ -95,7 +94,7 @@ void run_import(const ImportArguments& arguments) {
   io::expect_output(arguments.output, arguments.force, files);
   const std::string& first = arguments.inputs[0];
   const Specimen specimen = first.ends_with(io::snapshot_ending) ? from_snapshot(arguments) : from_tables(arguments);
-  // Opens it before writing it: a specimen that cannot be opened is refused here.
+  // Opens it before writing it, so that an invalid specimen is an error here.
   const Sizes sizes = sizes_of(Rve(specimen).network());
   io::write_specimen(specimen, arguments.output);
 
@@ -110,8 +109,8 @@ void run_import(const ImportArguments& arguments) {
   listing.add("lattice_m", row_major(specimen.cell.lattice), "m");
   add_proportions(listing, sizes);
   listing.print(arguments.json);
-  tell_of_sizes(sizes);
-  tell_of_units(first, pack::unusual_in(specimen));
+  warn_of_sizes(sizes);
+  warn_of_units(first, pack::unusual_in(specimen));
 }
 
 }  // namespace

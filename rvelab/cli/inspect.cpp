@@ -1,4 +1,4 @@
-// rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in command.hpp.
+// rvelab inspect: the content of a specimen or record file, and the measures of its state. Declared in command.hpp.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/cli/tell_of_sizes.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
@@ -38,7 +38,7 @@ void add_forms(Listing& listing, const Network& network) {
     std::sort(half, half + 3);
     aspect += half[0] / half[2];
     elongation += half[1] / half[2];
-    const Superellipsoid unit = {s.a / s.c, s.b / s.c, 1, s.e, s.n};  // many grains are of one form
+    const Superellipsoid unit = {s.a / s.c, s.b / s.c, 1, s.e, s.n};  // many grains have the same shape
     const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-12 * std::abs(y); };
     if (!near(unit.a, last.a) || !near(unit.b, last.b) || unit.e != last.e || unit.n != last.n) {
       last = unit;
@@ -173,7 +173,7 @@ void run_inspect(const std::string& path, bool as_json) {
   add_state(listing, rve);
   add_model(listing, specimen);
   listing.print(as_json);
-  tell_of_sizes(sizes_of(rve.network()));
+  warn_of_sizes(sizes_of(rve.network()));
 }
 
 }  // namespace

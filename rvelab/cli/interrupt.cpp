@@ -60,7 +60,7 @@ EndInASecond::EndInASecond(std::function<std::string()> done) {
   };
   try {
     thread_ = std::thread(watch);
-  } catch (const std::system_error&) {  // no thread is to be had: only phases that ask for the signal end by it
+  } catch (const std::system_error&) {  // no thread available: only phases that check for the signal end by it
   }
 }
 

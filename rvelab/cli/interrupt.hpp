@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: the first asks the work to stop and put its results away, the second ends the program at once.
+// Ctrl-C and SIGTERM: the first requests the work to stop and save its results, the second ends the program at once.
 #pragma once
 
 #include <atomic>
@@ -10,11 +10,11 @@
 
 namespace rvelab::cli {
 
-/// Takes both signals from here on. True once one has come.
+/// Handles both signals from this call on. Becomes true after the first signal.
 const std::atomic<bool>& stop_on_signals();
 
-/// Ends a command that keeps nothing of unfinished work: where a second after the signal it is still at it, in a phase
-/// that does not ask for the signal. `done`: as for end_stopped; it may wait, for a file that is being written.
+/// Ends a command that keeps no unfinished work, if it still runs a second after the signal in a phase that does not
+/// check for it. `done`: as for end_stopped; it may wait for a file that is being written.
 class EndInASecond {
  public:
   explicit EndInASecond(std::function<std::string()> done);
@@ -29,8 +29,7 @@ class EndInASecond {
   std::thread thread_;
 };
 
-/// Prints "stopped by Ctrl-C" (or SIGTERM) and what was done until then, and ends the command with the code of the
-/// signal.
+/// Prints "stopped by Ctrl-C" (or SIGTERM) and the work done so far, and ends the command with the code of the signal.
 [[noreturn]] void end_stopped(const std::string& done);
 
 }  // namespace rvelab::cli

@@ -47,7 +47,7 @@ Json as_json(const keys::Key& key) {
   return json;
 }
 
-/// Two lines: what may be written, and what it means.
+/// Two lines: the allowed values, and the meaning.
 std::string as_text(const keys::Key& key) {
   const std::string unit = key.unit == "1" || key.unit == "-" ? "" : " in " + key.unit;
   const std::string initial = key.required ? "required" : key.initial.empty() ? "no default" : "default " + key.initial;
@@ -79,7 +79,7 @@ void add_keys(CLI::App& app) {
   command.add_option("pattern", *pattern, "part of a key, for example pressure or stage.compression");
   add_json(command, *json);
   command.footer(
-      "A key of a stage stands in a file below [[stage]] with that kind; with --set it is stage.NAME.key. A key of\n"
+      "A key of a stage is below [[stage]] with that kind in a file; with --set it is stage.NAME.key. A key of\n"
       "[material] is material.key for all materials, material.NAME.key for one.\n\n"
       "Examples:\n"
       "  rvelab keys stage.compression\n"

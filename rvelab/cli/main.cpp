@@ -1,5 +1,5 @@
-// The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
-// 2: a user's mistake. Each error is one line of UTF-8 on standard error that names file and remedy; messages of the
+// The program `rvelab`: its subcommands, and the conversion of errors to exit codes. 0: done; 1: the run failed; 2: an
+// error of the user. Each error is one line of UTF-8 on standard error that names file and remedy; messages of the
 // standard library name neither. No colours.
 #include <unistd.h>
 
@@ -55,14 +55,14 @@ int fail_without_memory() {
   return run_failed;
 }
 
-/// A path that cannot be reached is a mistake of the user's; a failing file system is not.
+/// An unreachable path is an error of the user; a failing file system is not.
 int fail_at_path(const std::filesystem::filesystem_error& error) {
   const bool path_at_fault =
       error.code() == std::errc::filename_too_long || error.code() == std::errc::not_a_directory ||
       error.code() == std::errc::too_many_symbolic_link_levels || error.code() == std::errc::permission_denied ||
       error.code() == std::errc::no_such_file_or_directory || error.code() == std::errc::is_a_directory;
   const std::string remedy = path_at_fault ? "; give the path of a file in a folder that you may use"
-                                           : "; check the disk, or choose another place";
+                                           : "; check the disk, or choose another path";
   return fail(path_at_fault ? users_mistake : run_failed,
               error.path1().string() + ": cannot be used (" + error.code().message() + ")" + remedy);
 }
@@ -73,7 +73,7 @@ int done(int code) {
   return fail(run_failed, "standard output could not be written; free space or send it elsewhere");
 }
 
-/// Memory may run out where no handler is reached: before main, and in destructors of the JSON library, which allocate.
+/// Memory may run out outside any handler: before main, and in destructors of the JSON library, which allocate.
 [[noreturn]] void end() {
   try {
     if (const auto error = std::current_exception()) std::rethrow_exception(error);
@@ -87,7 +87,7 @@ int done(int code) {
 /// Before all other initialisers of the program.
 [[gnu::constructor(101)]] void catch_the_end() { std::set_terminate(end); }
 
-/// Reads the command line, does what it asks for and returns the exit code. Throws on failure.
+/// Reads the command line, executes it and returns the exit code. Throws on failure.
 int carried_out(int argc, char** argv) {
   using namespace rvelab::cli;
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other

@@ -10,11 +10,11 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
@@ -112,7 +112,7 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files, std
   ++written;
 }
 
-/// One line a specimen; the rest stands in --json.
+/// One line per specimen; all results are in --json.
 std::string table_of(const std::vector<Job>& jobs) {
   std::vector<std::vector<std::string>> rows{
       {"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
@@ -145,26 +145,26 @@ void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool jso
   if (jobs.size() > 1 && !json) std::cout << table_of(jobs) << std::flush;
 }
 
-/// Before the work, what takes long; the time is that of one core, since one draw is made on one.
-void tell_of_cost(const pack::Recipe& recipe) {
+/// Warns before a long packing; the time is that of one core, since each draw runs on one.
+void warn_of_cost(const pack::Recipe& recipe) {
   constexpr double long_time = 600;  // s
   const double seconds = pack::expected_seconds(recipe);
   if (!(seconds > long_time)) return;
   const bool searched = recipe.stress && recipe.void_ratio;
   tell(std::string(searched ? "each trial packing" : "this packing") + " takes some " + duration_in_words(seconds) +
        ", by packings of the same shape that were measured; Ctrl-C or SIGTERM stops it" +
-       (moves_as_body(recipe.shape) ? "; superellipsoids of smaller exponents or of more equal half axes take less"
-                                    : "; fewer grains take less"));
+       (moves_as_body(recipe.shape) ? "; superellipsoids of smaller exponents or of more equal half axes need less"
+                                    : "; fewer grains need less"));
 }
 
 void run_pack(const PackArguments& arguments) {
   const std::string recipe = input_path(arguments.recipe, InputKind::recipe);
   const pack::RecipeFile file = pack::read_recipe(recipe, arguments.settings);
-  tell_of_units(recipe, file.doubts);
+  warn_of_units(recipe, file.doubts);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});
-  tell_of_cost(file.recipe);
+  warn_of_cost(file.recipe);
   const unsigned threads =
       arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
   TerminalLine line;

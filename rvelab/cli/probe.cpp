@@ -1,5 +1,5 @@
-// rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network, or while a test
-// goes on to load it.
+// rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network, or in continued
+// loading of a test.
 // Declared in command.hpp.
 #include <optional>
 #include <string>
@@ -43,10 +43,10 @@ Json labels(int dimension, bool strain) {
 void expect_size(double size) {
   if (size >= protocol::smallest_probe && size <= 0.01) return;
   throw InputError("--size " + in_words(size) + " is out of range; allowed: " + in_words(protocol::smallest_probe) +
-                   " (what is smaller drowns in the round-off of the stress) to 0.01; give 1e-7 for an elastic probe");
+                   " (smaller ones are lost in the round-off of the stress) to 0.01; give 1e-7 for an elastic probe");
 }
 
-/// What is probed, and the direction in which its test went last; zero: none is known.
+/// The probed state, and the last loading direction of its test; zero: unknown.
 struct Probed {
   Specimen specimen;
   Matrix3 direction = Matrix3::Zero();
@@ -95,7 +95,7 @@ Eigen::MatrixXd by_loading(Listing& listing, const Rve& rve, const Matrix3& dire
                            const std::string& file) {
   if (direction.isZero(0))
     throw InputError(file +
-                     " has no test that strains it, so no direction in which loading goes on; give the record "
+                     " has no test that strains it, so no direction of continued loading; give the record "
                      "file of a test, or --method dynamic or linear");
   const Eigen::MatrixXd stiffness = loading_stiffness(rve, direction, size);
   listing.add("size", size);
@@ -146,7 +146,7 @@ void add_probe(CLI::App& app) {
       .add_option("--method", arguments->method,
                   "dynamic: small increments, plus and minus, each relaxed\n"
                   "linear: elastic tangent of the contact network, without sliding\n"
-                  "loading: increments that go on in the direction of the test, the second\n"
+                  "loading: increments of continued loading in the direction of the test, the second\n"
                   "half of each; needs a record file")
       ->check(CLI::IsMember({"dynamic", "linear", "loading"}))
       ->default_str("dynamic; with --bands: loading");

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "rvelab/cli/program_place.hpp"
+#include "rvelab/cli/program_path.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -50,7 +50,7 @@ void expect_installed() {
   if (!all_installed().empty()) return;
   throw Error(
       installed_folder().string() +
-      ": no protocols are installed there, where this program looks for them; install it anew (cmake --install), "
+      ": no protocols are installed there, where this program looks for them; install it again (cmake --install), "
       "or link to the program rather than copy it");
 }
 
@@ -106,7 +106,7 @@ void make_folder(const std::string& folder) {
   if (std::filesystem::is_directory(folder, ignored)) return;
   throw InputError(folder + ": the folder cannot be made (" +
                    (error ? error.message() : std::string("a file has this name")) +
-                   "); give one in a place that you may write to");
+                   "); give one in a writable folder");
 }
 
 void expect_folder_of(const std::string& file) {

@@ -1,4 +1,4 @@
-// rvelab recover: a record file from the journal that a stopped or killed run left. Declared in command.hpp.
+// rvelab recover: a record file from the journal of a stopped or killed run. Declared in command.hpp.
 
 #include <filesystem>
 #include <memory>

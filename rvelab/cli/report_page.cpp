@@ -56,8 +56,8 @@ void add_report(CLI::App& app) {
   add_force(command, arguments->force, "an existing page");
   add_json(command, arguments->json);
   command.footer(
-      "The page holds all that it shows and loads nothing: any browser of 2023 or later opens it, without a network.\n"
-      "Tests that differ by their specimen alone are one curve, their mean, with a band. Grains and force chains are\n"
+      "The page contains all its data and loads nothing: any browser of 2023 or later opens it, without a network.\n"
+      "Tests that differ only by their specimen form one curve, their mean, with a band. Grains and force chains are\n"
       "shown at the end of each test, and along it where a test was run with --set output.snapshots_every=10. Where "
       "the\n"
       "states would be larger than --states-MB, every second, third, ... of them is kept, and the first and the last.\n"

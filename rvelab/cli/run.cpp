@@ -12,13 +12,13 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
@@ -125,7 +125,7 @@ void add_liquefaction(const protocol::Protocol& protocol, const protocol::TestRu
 }
 
 /// Of p: an error above which the largest one is commented, beyond the scatter of peaks over specimens.
-constexpr double doubtful_error = 0.1;
+constexpr double noted_error = 0.1;
 
 /// Where the time of this run went, and the error estimates of its stresses; nothing of a test that was complete
 /// before.
@@ -136,7 +136,7 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
     listing.add("largest_error_estimate", costs.largest_error,
                 "of p at strain " + in_words(costs.largest_error_strain) +
                     ": how far the stress of a record may be from that of infinitely slow loading" +
-                    (costs.largest_error > doubtful_error
+                    (costs.largest_error > noted_error
                          ? "; the grains rearrange within that record: judge the curve by the mean, or give a lower "
                            "solver.relative_tolerance"
                          : ""));
@@ -180,7 +180,7 @@ void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, L
 void report_run(const protocol::Protocol& protocol, const Specimen& specimen, const protocol::TestRun& run, double wall,
                 const std::string& output, bool json) {
   const records::TestResult& result = run.result;
-  const Doubtful doubtful = doubtful_of(result.records, run.end_state.cell.dimension);
+  const FlaggedRecords flagged = flagged_records(result.records, run.end_state.cell.dimension);
   Listing listing;
   listing.add("protocol", result.protocol);
   if (!result.axis.empty()) {
@@ -190,9 +190,9 @@ void report_run(const protocol::Protocol& protocol, const Specimen& specimen, co
   listing.add("stages", result.stages);
   if (!run.events.empty()) listing.add("ended_by", run.events);
   listing.add("records", json ? arrays_of(result.records) : Json(result.records.size()));
-  listing.add("flagged", doubtful.not_held);
-  listing.add("not_quasi_static", doubtful.not_quasi_static);
-  listing.add("cell_thin", doubtful.thin);
+  listing.add("flagged", flagged.not_held);
+  listing.add("not_quasi_static", flagged.not_quasi_static);
+  listing.add("cell_thin", flagged.thin);
   if (!result.records.empty()) add_end(protocol, run, listing);
   add_liquefaction(protocol, run, listing);
   for (const records::ProbeResult& probe : result.probes) {
@@ -209,7 +209,7 @@ void report_run(const protocol::Protocol& protocol, const Specimen& specimen, co
   listing.add("grain_steps", result.grain_steps);
   add_costs(run, wall, listing);
   listing.print(json);
-  warn_records(specimen, run, doubtful);
+  warn_records(specimen, run, flagged);
 }
 
 void run_test(const RunArguments& arguments) {
@@ -236,8 +236,8 @@ void run_test(const RunArguments& arguments) {
   } else if (!arguments.test.json && protocol::planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
     tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
-  tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
-  tell_of_shear(protocol, specimen);
+  warn_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
+  warn_of_shear(protocol, specimen);
   protocol::TestRun run;
   double wall = 0;
   {

@@ -43,7 +43,7 @@ void add_seal(CLI::App& app) {
       "Files of rvelab end in a checksum; a file whose bytes do not match it is refused. A program that opens such a\n"
       "file for writing removes the checksum. If you meant the change, seal reads what rvelab knows of the file, "
       "checks\n"
-      "it and writes it anew. It cannot tell an intended change from damage, so inspect the result.\n"
+      "it and writes it again. It cannot distinguish an intended change from damage, so inspect the result.\n"
       "Example:\n"
       "  rvelab seal edited.h5 -o S.h5");
   command.callback([arguments] { run_seal(*arguments); });

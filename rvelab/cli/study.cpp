@@ -9,12 +9,12 @@
 #include <optional>
 
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/study_report.hpp"
+#include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -62,7 +62,7 @@ Loaded loaded(const std::string& name) {
   if (found.study.protocol_text.empty()) {
     const std::string& named = found.study.protocol;
     found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
-    tell_of_units(found.path, protocol::read_protocol(found.path).doubts);  // and its mistakes with their lines
+    warn_of_units(found.path, protocol::read_protocol(found.path).doubts);  // and its mistakes with their lines
     found.study.protocol_text = keys::whole_file<std::string>(found.path, "a protocol");
     found.inputs.push_back(found.path);
   }
@@ -218,7 +218,7 @@ void add_study(CLI::App& app) {
       ->check(CLI::Range(0, 1'000'000));
   command.add_option("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
   add_threads(command, arguments->threads, "default: one per core");
-  command.add_flag("--force", arguments->force, "start anew in a folder that holds a study");
+  command.add_flag("--force", arguments->force, "start again in a folder that holds a study");
   command.add_flag("--resume", arguments->resume, "continue a study that was stopped")->excludes("--force");
   add_json(command, arguments->json);
   command.footer(

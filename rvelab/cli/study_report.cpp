@@ -240,7 +240,7 @@ void expect_same(const std::string& path, const study::Study& study) {
   const std::string found = study::difference(there, study);
   if (found.empty()) return;
   throw InputError(path + ": is another study: " + found +
-                   "; allowed with --resume: the same; give it, or another folder, or start anew with --force");
+                   "; allowed with --resume: the same; give it, or another folder, or start again with --force");
 }
 
 }  // namespace

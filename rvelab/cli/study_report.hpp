@@ -1,5 +1,5 @@
-// What a study gives, as JSON, as CSV and as tables on a terminal; and its folder: study.toml (the study itself),
-// pieces/ (what was run, one JSON file each), study.csv and study.json.
+// The results of a study as JSON, CSV and tables on a terminal; and its folder: study.toml (the study itself), pieces/
+// (finished runs, one JSON file each), study.csv and study.json.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 
 namespace rvelab::cli {
 
-/// One object: the study, the measures and what they mean, the reference, and the grid points in their order.
+/// One object: the study, the measures and their meaning, the reference, and the grid points in order.
 Json as_json(const study::Study& study, const study::StudySummary& summary);
 
-/// A header and one line a run, the reference first.
+/// A header and one line per run, the reference first.
 std::string as_csv(const study::Study& study, const study::StudySummary& summary);
 
-/// The errors and costs of the increments, and the measures of the whole paths, one line a run each.
+/// The errors and costs of the increments, and the measures of the whole paths, one line per run.
 std::string as_tables(const study::Study& study, const study::StudySummary& summary);
 
 class StudyFolder {

@@ -31,7 +31,7 @@ std::vector<Vector3> directions(int dimension) {
   return all;
 }
 
-/// Moves a normal downhill by steps to each side, halved where none leads lower.
+/// Descent of a normal by steps in each direction, halved when no step reduces det Q.
 void descend(const Eigen::MatrixXd& stiffness, Band& band) {
   const int dimension = dimension_of_stiffness(stiffness);
   for (double step = 0.05; step > 1e-10;) {

@@ -1,11 +1,10 @@
 // The acoustic tensor of a stiffness, and the band that it allows (Rudnicki and Rice 1975; Rice 1976).
 //
 //   Q_ik(n) = n_j C_ijkl n_l
-// A band with the normal n may part from its surroundings where det Q(n) <= 0. C is d(Cauchy stress)/d(strain) as
-// elastic_tangent() and probe_stiffness() give it: terms of the order of the stress, which a turn of the stress brings,
-// are left out beside the stiffness. Of plastic material with the angles phi and psi in the plane the first band has
-// cos 2 theta = -(sin phi + sin psi)/2, theta between its normal and the major stress (Vardoulakis 1980): 45 + phi/2 to
-// 45 + psi/2.
+// A band with the normal n may form if det Q(n) <= 0. C is d(Cauchy stress)/d(strain) as given by elastic_tangent() and
+// probe_stiffness(); terms of the order of the stress, by its rotation, are neglected against the stiffness. For a
+// plastic material with the angles phi and psi in the plane the first band has cos 2 theta = -(sin phi + sin psi)/2,
+// theta between its normal and the major stress (Vardoulakis 1980): 45 + phi/2 to 45 + psi/2.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +16,7 @@ namespace rvelab {
 /// d x d, Pa. `stiffness`: 3 x 3 in the order xx yy xy, or 6 x 6, xx yy zz yz xz xy. `normal`: of length 1.
 Eigen::MatrixXd acoustic_tensor(const Eigen::MatrixXd& stiffness, const Vector3& normal);
 
-/// The direction in which det Q is least.
+/// The direction of the least det Q.
 struct Band {
   double determinant = 0;  ///< Pa^d
   Vector3 normal;          ///< of length 1, first component that is not zero positive

@@ -31,9 +31,9 @@ std::vector<Matrix3> orthonormal_tensors(int dimension) {
   return all;
 }
 
-/// Least squares of a field over the directions: the tensor A for which field(A, n) is nearest to value(contact), both
-/// vectors, summed over the contacts. `tensors`: what A is made of. Where the normals leave a part of A open (those of
-/// a square lattice), that part is zero.
+/// Least squares of a field over the directions: the tensor A with the least squared difference of field(A, n) and
+/// value(contact), both vectors, summed over the contacts. `tensors`: the basis of A. Parts of A that the normals do
+/// not determine (those of a square lattice) are zero.
 template <class Field, class Value>
 Matrix3 fitted(const Network& network, const std::vector<Matrix3>& tensors, const Field& field, const Value& value) {
   const auto size = static_cast<Eigen::Index>(tensors.size());
@@ -98,7 +98,7 @@ Moments fourth_moments(const Network& network) {
   return sum / static_cast<double>(network.contacts.size());
 }
 
-/// Amplitude of the fourth order: E:E of <n n n n> less the parts of lower order (Kanatani 1984).
+/// Amplitude of the fourth order: E:E of <n n n n> minus the parts of lower order (Kanatani 1984).
 double fourth_order_amplitude(const Network& network) {
   const double second = fabric(network).squaredNorm(), whole = fourth_moments(network).squaredNorm();
   const bool plane = network.dimension() == 2;

@@ -1,9 +1,9 @@
 // LU factors of a sparse matrix of square blocks, a row and a column of blocks for each grain and a pair of blocks for
-// each contact. Grains are eliminated in the order of least degree (Rose 1972): of those left, the one with the fewest
-// neighbours, which are neighbours of each other then. Rows change places within a block only: the stiffness of a
-// network is nearly symmetric, and what is lost where its blocks are poor pivots is won back by iterative refinement.
+// each contact. Grains are eliminated in the order of least degree (Rose 1972): the next is the remaining grain with
+// the fewest neighbours, which then become neighbours of each other. Rows are exchanged only within a block: the
+// stiffness of a network is nearly symmetric, and iterative refinement corrects the loss at poor pivots.
 //
-// Out of memory is std::bad_alloc. Eigen's SparseLU frees twice what it could not enlarge.
+// Out of memory throws std::bad_alloc. (Eigen's SparseLU frees memory twice after a failed reallocation.)
 #pragma once
 
 #include <Eigen/LU>
@@ -25,12 +25,12 @@ class BlockFactors {
   using Block = Eigen::Matrix<double, F, F>;
 
   BlockFactors() = default;
-  /// Blocks of `grains` rows; those beside the diagonal are of these pairs, in either order, and may stand twice.
+  /// Blocks of `grains` rows; those beside the diagonal are of these pairs, in either order, possibly repeated.
   BlockFactors(std::size_t grains, std::span<const std::array<int, 2>> pairs) {
     const auto later = order_of(neighbours_of(grains, pairs));
     begin_.push_back(0);
-    for (const std::vector<int>& places : later) {
-      later_.insert(later_.end(), places.begin(), places.end());
+    for (const std::vector<int>& positions : later) {
+      later_.insert(later_.end(), positions.begin(), positions.end());
       begin_.push_back(later_.size());
     }
     diagonal_.assign(grains, Block::Zero());
@@ -40,7 +40,7 @@ class BlockFactors {
 
   /// Block of the grains i (row) and j (column).
   Block& at(int i, int j) {
-    const int row = place_[std::size_t(i)], column = place_[std::size_t(j)];
+    const int row = position_[std::size_t(i)], column = position_[std::size_t(j)];
     if (row == column) return diagonal_[std::size_t(row)];
     return row > column ? lower_[find(column, row)] : upper_[find(row, column)];
   }
@@ -77,9 +77,9 @@ class BlockFactors {
     return true;
   }
 
-  /// Solves for the right-hand side `x`, F numbers for each grain, in its place; `scratch` is as long.
+  /// Solves in place for the right-hand side `x`, F numbers for each grain; `scratch` has the same length.
   void solve(Eigen::VectorXd& x, Eigen::VectorXd& scratch) const {
-    for (std::size_t g = 0; g < place_.size(); ++g) part(scratch, std::size_t(place_[g])) = part(x, g);
+    for (std::size_t g = 0; g < position_.size(); ++g) part(scratch, std::size_t(position_[g])) = part(x, g);
     for (std::size_t k = 0; k < diagonal_.size(); ++k)
       for (std::size_t q = begin_[k]; q < begin_[k + 1]; ++q)
         part(scratch, std::size_t(later_[q])).noalias() -= lower_[q] * part(scratch, k);
@@ -88,7 +88,7 @@ class BlockFactors {
         part(scratch, k).noalias() -= upper_[q] * part(scratch, std::size_t(later_[q]));
       part(scratch, k) = (diagonal_[k] * part(scratch, k)).eval();
     }
-    for (std::size_t g = 0; g < place_.size(); ++g) part(x, g) = part(scratch, std::size_t(place_[g]));
+    for (std::size_t g = 0; g < position_.size(); ++g) part(x, g) = part(scratch, std::size_t(position_[g]));
   }
 
  private:
@@ -110,17 +110,17 @@ class BlockFactors {
     return found;
   }
 
-  /// Sets place_; for each place those after it which are neighbours when it is eliminated, ascending.
+  /// Sets position_; returns for each position the later ones that are neighbours at its elimination, ascending.
   Neighbours order_of(Neighbours neighbours) {
     std::set<std::pair<std::size_t, int>> left;  // by degree, then by number
     for (std::size_t g = 0; g < neighbours.size(); ++g) left.emplace(neighbours[g].size(), int(g));
-    place_.resize(neighbours.size());
+    position_.resize(neighbours.size());
     Neighbours later(neighbours.size());
     std::vector<int> joined;
     for (std::size_t k = 0; k < later.size(); ++k) {
       const int next = left.begin()->second;
       left.erase(left.begin());
-      place_[std::size_t(next)] = int(k);
+      position_[std::size_t(next)] = int(k);
       later[k] = std::move(neighbours[std::size_t(next)]);
       for (const int g : later[k]) {
         std::vector<int>& of = neighbours[std::size_t(g)];
@@ -133,21 +133,21 @@ class BlockFactors {
       }
     }
     for (std::vector<int>& of : later) {
-      for (int& g : of) g = place_[std::size_t(g)];
+      for (int& g : of) g = position_[std::size_t(g)];
       std::sort(of.begin(), of.end());
     }
     return later;
   }
 
-  std::size_t find(int place, int after) const {
-    const auto first = later_.begin() + std::ptrdiff_t(begin_[std::size_t(place)]);
-    const auto last = later_.begin() + std::ptrdiff_t(begin_[std::size_t(place) + 1]);
+  std::size_t find(int position, int after) const {
+    const auto first = later_.begin() + std::ptrdiff_t(begin_[std::size_t(position)]);
+    const auto last = later_.begin() + std::ptrdiff_t(begin_[std::size_t(position) + 1]);
     return std::size_t(std::lower_bound(first, last, after) - later_.begin());
   }
 
-  std::vector<int> place_;          ///< of each grain in the order of elimination
-  std::vector<std::size_t> begin_;  ///< of each place in the arrays below, and their end
-  std::vector<int> later_;          ///< places of the blocks right of and below each diagonal block
+  std::vector<int> position_;       ///< of each grain in the order of elimination
+  std::vector<std::size_t> begin_;  ///< first entry of each position in the arrays below, and their end
+  std::vector<int> later_;          ///< positions of the blocks right of and below each diagonal block
   std::vector<Block> lower_, upper_;
   std::vector<Block> diagonal_;  ///< inverted by factorise()
 };

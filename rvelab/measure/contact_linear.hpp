@@ -12,7 +12,7 @@
 // Slip `consistent`: s = 1, c = a; `full_radius`: s = 1, c = r, no turning by the mean spin; `full_radius_ratcheting`:
 // s = R/l, c = r. In 2D the same formulas hold with rotations and moments along z.
 //
-// Of two grains that are not round the normal turns with the grains too.
+// For two grains that are not round the normal also rotates with the grains.
 // h_i(n) is the support of a grain about its centre, h' and h'' = rho - h its derivatives along the circle of
 // directions, rho the radius of curvature at the support point (of ellipses a^2 b^2/h^3; Bend in
 // grains/description.hpp); n is where f = h_i + h_j - n.b is least, and t = (-n_y, n_x). With dphi the turn of n:
@@ -56,15 +56,15 @@ LinearContact linearised(const InteractionState& interaction, double ri, double 
 /// True where the law of the network makes f_t and M fall with sqrt(overlap): it keeps that root from step to step.
 bool rescales(const Network& network);
 
-/// The radius that the constants of the law go with; `equivalent`, which stays as grains turn, of laws without one.
+/// The radius in the constants of the law; `equivalent`, which is independent of rotations, for laws without one.
 HertzRadius hertz_radius(const Network& network);
 
-/// What unloading adds to `linearised` where dl > 0: terms in dl alone.
+/// Terms that unloading adds to `linearised` for dl > 0: only in dl.
 LinearContact unloading_terms(const ContactState& contact, double ri, double rj);
 
 struct LinearOutlineContact {
   LinearContact law;        ///< without rescaling on unloading
-  LinearContact unloading;  ///< what that adds where the overlap falls
+  LinearContact unloading;  ///< terms of rescaling, for a decreasing overlap
   ContactRow opening;       ///< -d delta; with the radius of curvature -(d delta + delta dR*/R*)
 };
 

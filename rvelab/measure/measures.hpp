@@ -1,9 +1,9 @@
 // Measures of a contact network: stress, fabric, coordination, void ratio, sliding, energies, dimensionless numbers.
 //
-// This room reads a Network (or tensors) and changes nothing; it knows no list, no step and no file. The network
-// stands in the cell frame; every tensor that leaves here is in the laboratory frame. SI units; stress is Cauchy,
-// tension positive; p and q are compression positive as soil mechanics writes them. 2D: volumes are those of the slab,
-// tensors have zero z-components. A mean over nothing (fabric without a contact, void ratio without a grain) is NaN.
+// This module reads a Network (or tensors) and changes nothing; it is independent of lists, steps and files. The
+// network is in the cell frame; returned tensors are in the laboratory frame. SI units; stress is Cauchy, tension
+// positive; p and q are compression positive as in soil mechanics. 2D: volumes are those of the slab, tensors have zero
+// z-components. The mean of an empty set (fabric without a contact, void ratio without a grain) is NaN.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ namespace rvelab {
 /// measures unbalanced torque.
 Matrix3 contact_stress(const Network& network);
 
-/// Part of it that bonds, water or adhesion bear.
+/// Part of it carried by bonds, water or adhesion.
 Matrix3 interaction_stress(const Network& network, Family family);
 
 /// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.
@@ -27,10 +27,10 @@ Matrix3 reynolds_stress(const Network& network);
 /// q, Pa, of the symmetric deviator s: 2D sqrt(s:s/2), 3D sqrt(3 s:s/2).
 double deviatoric_stress(const Matrix3& stress, int dimension);
 
-/// eps_q of the symmetric deviator e: 2D sqrt(2 e:e), 3D sqrt(2 e:e/3). Takes rates as well.
+/// eps_q of the symmetric deviator e: 2D sqrt(2 e:e), 3D sqrt(2 e:e/3). Also for rates.
 double deviatoric_strain(const Matrix3& strain, int dimension);
 
-/// <n (x) n> over all contacts; trace 1. That of grains that are not round is not along their branch.
+/// <n (x) n> over all contacts; trace 1. n differs from the branch direction for grains that are not round.
 Matrix3 fabric(const Network& network);
 
 /// sum b (x) b / sum b.b over all contacts: fabric weighted with the squared branch length; trace 1.
@@ -46,14 +46,14 @@ double fabric_anisotropy(const Matrix3& fabric, int dimension);
 /// Number of contacts of each grain; a contact with its own image counts twice.
 std::vector<int> contact_counts(const Network& network);
 
-/// Grains that carry nothing: fewer than two contacts, in 2D and 3D, removed with their contacts until none is left
-/// (Thornton 2000 removes once). Two opposite contacts hold a grain by friction, one never does.
+/// Grains without load: fewer than two contacts, in 2D and 3D, removed repeatedly with their contacts (Thornton 2000
+/// removes once). Two opposite contacts can hold a grain by friction, a single one cannot.
 std::vector<bool> rattlers(const Network& network);
 
 /// Z = 2 Nc/N, all grains counted.
 double coordination_number(const Network& network);
 
-/// 2 Np/N, Np pairs of grains that touch. Bodies may touch in several contacts: those count once.
+/// 2 Np/N, Np touching pairs of grains. Several contacts of two bodies count once.
 double touching_neighbours(const Network& network);
 
 /// Z_mech = 2 Nc/N without rattlers and their contacts.
@@ -77,7 +77,7 @@ double unbalanced_torque_ratio(const Network& network);
 
 /// Energy stored in contacts, J: normal, tangential and rolling springs.
 double elastic_energy(const Network& network);
-/// Volume of the cell less that of the grains, m^3; overlaps not subtracted.
+/// Volume of the cell minus that of the grains, m^3; overlaps not subtracted.
 double pore_volume(const Network& network);
 
 /// sum m v'^2/2 + I w^2/2, J, with w the whole spin, as the energy balance counts it (with w' alone the balance of a

@@ -11,11 +11,12 @@
 namespace rvelab {
 namespace {
 
-/// The stress is read at an unbalanced ratio this low where it can be had, so that what is left (about this times p)
-/// stays far below the change of stress that a small probe makes.
+/// The stress is read at an unbalanced ratio this low if it can be reached, so that the remaining error (about this
+/// times p) is far below the change of stress by a small probe.
 constexpr double wanted_ratio = 1e-13;
 
-/// Steps at a time towards it: round-off may keep a stiff specimen above, and then nothing is gained by going on.
+/// Steps at a time towards it: round-off may keep a stiff specimen above this ratio, and further steps are then
+/// useless.
 constexpr long relaxing_steps = 2000;
 
 double relax_fully(Rve& rve, long max_steps) {
@@ -23,7 +24,7 @@ double relax_fully(Rve& rve, long max_steps) {
   for (long made = 0; made < max_steps && smallest > wanted_ratio;) {
     const Report report = rve.relax(wanted_ratio, std::min(relaxing_steps, max_steps - made));
     made += std::max(report.substeps, 1L);
-    // A grain that touches down late lifts the ratio again after it was low: then there is more to relax.
+    // A late contact of a grain raises the ratio again: the state then needs further relaxation.
     const bool stalled = report.unbalanced_ratio > 0.5 * smallest && report.unbalanced_ratio < relaxed_ratio;
     smallest = std::min(smallest, report.unbalanced_ratio);
     if (stalled) break;

@@ -1,5 +1,5 @@
-// Stiffness probes: the response of an RVE to small strains, either each component by itself, plus and minus, or all
-// beside the direction in which a test loads it.
+// Stiffness probes: the response of an RVE to small strains, either of each component, plus and minus, or in
+// directions close to the loading direction of a test.
 //
 // Rows are the symmetric part of the Cauchy stress (tension positive, Pa), columns strains with engineering shear
 // (dH_xy = dH_yx = gamma/2), laboratory frame; order of tensor_order.hpp: xx yy xy in 2D, xx yy zz yz xz xy in 3D.
@@ -19,7 +19,7 @@ inline constexpr double relaxed_ratio = 1e-10;
 struct Probe {
   Eigen::MatrixXd stiffness;         ///< Pa, mean of plus and minus
   double size = 0;                   ///< strain of each probe, dimensionless
-  double unbalanced_ratio = 0;       ///< the largest that was left
+  double unbalanced_ratio = 0;       ///< largest remaining one
   double plus_minus_difference = 0;  ///< largest |C+ - C-| over the largest |C|; slip and openings show here
   bool relaxed = true;               ///< unbalanced_ratio < relaxed_ratio
 };
@@ -30,13 +30,14 @@ struct Probe {
 /// times p over size. IncrementFailed as apply.
 Probe probe_stiffness(const Rve& rve, double size, long max_steps = 2'000'000);
 
-/// Strain of a loading probe: beyond the strain that a relaxed state takes until its contacts slide again, short beside
+/// Strain of a loading probe: larger than the strain after which contacts of a relaxed state slide again, smaller than
 /// the strains over which a test hardens.
 inline constexpr double usual_loading_probe = 1e-3, smallest_loading_probe = 1e-5, largest_loading_probe = 1e-2;
 
-/// The stiffness while loading goes on: d(sigma)/d(strain) near one direction of strain, not averaged with unloading,
-/// whose response is another in an assembly with sliding contacts. `direction`: its symmetric part counts, of any
-/// length, laboratory frame. With d0 of unit length (Frobenius) along it, t of unit length across it, a = 0.3:
+/// The stiffness of continued loading: d(sigma)/d(strain) near one direction of strain, without averaging with
+/// unloading, which has a different response in an assembly with sliding contacts. `direction`: its symmetric part is
+/// used, of any length, laboratory frame. With d0 of unit length (Frobenius) along it, t of unit length across it,
+/// a = 0.3:
 ///   D d0 = s(d0),   D t = (s(d0 + a t) - s(d0 - a t))/2a
 /// s(d): change of stress over strain in the second half of the straight path size d from a copy of the RVE. In the
 /// first half contacts begin to slide and the lag of the state decays: relaxed and unrelaxed copies then give the same.

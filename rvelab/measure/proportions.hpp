@@ -1,4 +1,5 @@
-// Whether the numbers of a specimen make sense together: what a wrong unit, a thick slab or a soft contact shows in.
+// Ratios that show whether the numbers of a specimen are plausible: they reveal a wrong unit, a thick slab or soft
+// contacts.
 #pragma once
 
 #include <string>
@@ -7,7 +8,7 @@
 
 namespace rvelab {
 
-/// Dimensionless; NaN where there is nothing to divide by (no contact, no pressure).
+/// Dimensionless; NaN where the divisor is zero (no contact, no pressure).
 struct Proportions {
   int dimension = 3;
   double void_ratio = 0;

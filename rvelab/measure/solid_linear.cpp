@@ -20,8 +20,8 @@ SupportAt<double> support_of(const GrainState& grain, const Matrix3& axes, const
   return support_at(plain_form_of(superellipsoid_of(grain)),
                     SuperellipsoidAxes<double>{column(0), column(1), column(2)}, Triple<double>{n.x(), n.y(), n.z()});
 }
-/// Radii of curvature across n (m), n the outward normal of a grain. A flat side has no bound; beyond a million of its
-/// sizes a contact cannot tell.
+/// Radii of curvature across n (m), n the outward normal of a grain, limited to a million times its size: larger radii
+/// of flat sides make no difference at a contact.
 Matrix3 curvature_radii(const GrainState& grain, const Matrix3& axes, const Vector3& n) {
   const SupportAt<double> at = support_of(grain, axes, n);
   const double most = 1e6 * grain.radius;
@@ -34,7 +34,7 @@ Matrix3 curvature_radii(const GrainState& grain, const Matrix3& axes, const Vect
   return radii;
 }
 
-/// d ln R* (contact/hertz_curvature.hpp) by differences, where n and both bodies turn.
+/// d ln R* (contact/hertz_curvature.hpp) by finite differences, as n and both bodies rotate.
 ContactRow relative_radius(const GrainState& grain_i, const Matrix3& axes_i, const ContactMatrix& turn_i,
                            const GrainState& grain_j, const Matrix3& axes_j, const ContactMatrix& turn_j,
                            const Vector3& n, const ContactMatrix& dn) {

@@ -11,10 +11,10 @@
 //   d M     = likewise turned, - k_r P (dtheta_j - dtheta_i), rescaled as f_t
 //   d x_i   = (dp_i + dp_j + db)/2,   dp_i = dtheta_i x p_i + C_i (dn - dtheta_i x n), dp_j likewise with -C_j
 //   T_i     = -x_i x F - M,   T_j = x_j x F + M
-// With Hertz's radius from the curvature (contact/hertz_curvature.hpp) f_n changes by f_n dR*/(2 R*) besides, and d
-// delta in the rescaling of f_t is d delta + delta dR*/R*.
+// With Hertz's radius from the curvature (contact/hertz_curvature.hpp) f_n also changes by f_n dR*/(2 R*), and d delta
+// in the rescaling of f_t is d delta + delta dR*/R*.
 //
-// (the second: p_i - p_j - b = delta n stays along n.) Of two spheres this is contact_linear.hpp.
+// (The second equation: p_i - p_j - b = delta n stays along n.) For two spheres this is contact_linear.hpp.
 #pragma once
 
 #include "rvelab/measure/contact_linear.hpp"

@@ -55,7 +55,7 @@ StoredPlace place_of(const Specimen& specimen, const Contact& contact) {
   });
 }
 
-/// What laws take for sqrt(overlap) > 0, m^0.5.
+/// The root of the overlap (> 0) that laws use, m^0.5.
 double overlap_root_of(const Specimen& specimen, const Contact& contact) {
   if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
     return std::sqrt(overlap_of(specimen, contact));

@@ -1,4 +1,4 @@
-// One contact of a specimen that is not opened as an Rve, as its law makes it: for files that are read and written.
+// One contact of a specimen that is not opened as an Rve, computed by its law: for reading and writing files.
 #pragma once
 
 #include "rvelab/specimen/specimen.hpp"

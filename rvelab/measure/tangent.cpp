@@ -108,9 +108,9 @@ LinearSpring spring_of(const Network& network, const InteractionState& other) {
   return {&other, rows_of(linear), Vector9::Zero()};
 }
 
-/// A strain as the cell sees it: I + H = (I + turn)(I + stretch) to first order, stretch upper triangular. The frame
-/// turns by `turn`; in it the grains turn on average with the spin of the stretch. Contact histories are carried in
-/// this frame, which shows in the one slip convention that is not objective (full_radius).
+/// A strain in the frame of the cell: I + H = (I + turn)(I + stretch) to first order, stretch upper triangular. The
+/// frame rotates by `turn`; in it the grains rotate on average with the spin of the stretch. Contact forces are stored
+/// in this frame, which matters only for the slip convention that is not objective (full_radius).
 struct CellStrain {
   Matrix3 stretch, turn;
   Vector9 rotations;  ///< mean motion q of two grains without their branch: (0, spin, spin)
@@ -225,7 +225,8 @@ class Condensed {
         for (int b = 0; b < 2; ++b)
           factors_.at(pairs[s][std::size_t(a)], pairs[s][std::size_t(b)]) += local.template block<F, F>(F * a, F * b);
     }
-    // A small spring to the ground on every freedom holds translations and free spins; refinement takes it out again.
+    // A small spring to the ground on every degree of freedom holds translations and free spins; refinement removes
+    // its effect.
     factors_.add_to_diagonal(1e-10 * factors_.largest_on_diagonal());
     if (!factors_.factorise()) {
       throw Error("elastic tangent: the stiffness of the contact network cannot be factorised (" +
@@ -256,9 +257,9 @@ class Condensed {
     return load.cwiseAbs().maxCoeff();
   }
 
-  /// The motion at which every grain is balanced. The |dl| terms are small beside the springs, so that iterating with
-  /// the linear part converges; without them this is iterative refinement. Stops where the residual falls no further:
-  /// at round-off, or where a free spin bears what the state itself lacks in balance.
+  /// The motion that brings every grain into equilibrium. The |dl| terms are small compared with the springs, so that
+  /// iteration with the linear part converges; without them this is iterative refinement. Stops when the residual no
+  /// longer falls: at round-off, or at the imbalance of the state itself on a free spin.
   Vector balance(const CellStrain& strain) const {
     constexpr int most_iterations = 200;
     constexpr double exact = 1e-13;

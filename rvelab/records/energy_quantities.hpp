@@ -1,6 +1,6 @@
-// The energy balance as quantities of records: sums of the whole cell since the specimen was first opened, J; NaN where
-// the balance is not computed (solver.energy_balance). With elastic_energy_J and kinetic_energy_J it closes as
-// solver/README.md says.
+// The energy balance as quantities of records: sums of the whole cell since the specimen was first opened, J; NaN if
+// the balance is not computed (solver.energy_balance). With elastic_energy_J and kinetic_energy_J it closes
+// (solver/README.md).
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// The direction of strain in which a test goes on, from its records.
+// The present loading direction (strain) of a test, from its records.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 namespace rvelab::records {
 
 /// Symmetric part of dF F^-1, laboratory frame, of the last 0.5 % of the driving strain in the stage of the last
-/// record, less where the stage began or turned since: records scatter, and a single increment does not tell the
-/// direction. Zero where that stage has no two records with different strains.
+/// record, or since the start of the stage or its last reversal if that is shorter: records scatter, so a single
+/// increment does not give the direction. Zero if the stage has no two records with different strains.
 Matrix3 loading_direction(std::span<const Record> records);
 
 }  // namespace rvelab::records

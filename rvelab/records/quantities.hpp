@@ -1,8 +1,7 @@
-// The table of the quantities that may be measured at a record beside strain and stress. Everything takes them from
-// here: records, record files and journals, the key output.quantities, the events of stages (those that are numbers)
-// and the program's --json.
+// The table of the quantities of a record beside strain and stress. Records, record files and journals, the key
+// output.quantities, the events of stages (scalars only) and the program's --json use this table.
 //
-// A new quantity is its struct (quantity.hpp says how) and its place in the list.
+// A new quantity is a struct (form: quantity.hpp) and an entry in the list.
 #pragma once
 
 #include "rvelab/measure/deviator.hpp"
@@ -122,7 +121,7 @@ struct KineticEnergy {
   static double measure(const MeasuredState& state) { return rvelab::kinetic_energy(state.network); }
 };
 
-// Anisotropies along the deviator of the stress, and what they make of it (rvelab/measure/anisotropy.hpp).
+// Anisotropies along the deviator of the stress, and the stress that they predict (rvelab/measure/anisotropy.hpp).
 
 struct ContactAnisotropy {
   double a_c = 0;
@@ -195,7 +194,7 @@ struct StrongDeviator {
 
 // Bonds (rvelab/interaction: beam.hpp, contact_bond.hpp).
 
-/// Sum of what `of(Law{}, columns)` makes of each bond.
+/// Sum of `of(Law{}, columns)` over all bonds.
 template <class Of>
 double sum_over_bonds(const MeasuredState& state, const Of& of) {
   double sum = 0;
@@ -293,7 +292,7 @@ struct AdhesionStress {
   static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, Family::adhesion); }
 };
 
-/// New ones come last: journals name what was asked for by the places here.
+/// New ones come last: journals identify the requested quantities by their index in this list.
 using Quantities = QuantityTable<  //
     VoidRatio,                     //
     CoordinationNumber,            //
@@ -347,7 +346,7 @@ inline constexpr auto quantity_rows = Quantities::rows();
 template <class Quantity>
 inline constexpr std::uint64_t asked = Quantities::bit_of<Quantity>();
 
-/// Measured where a protocol does not say.
+/// Default of a protocol.
 inline constexpr std::uint64_t usual_quantities = [] {
   std::uint64_t bits = 0;
   for (const QuantityRow& row : quantity_rows) bits |= row.text.usual ? row.bit : 0;

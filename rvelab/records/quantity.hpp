@@ -1,7 +1,7 @@
-// How a quantity that may be measured at a record is written down, and the table that such quantities make.
+// The declaration of a quantity of records, and the table of such quantities.
 //
 // A quantity is a struct with one member, the value (a number or a 3x3 tensor), and
-//   static constexpr QuantityText text   what it is called, its unit, what it means
+//   static constexpr QuantityText text   its name, unit and meaning
 //   static constexpr auto member         its member
 //   static measure(state)                the function that measures it
 // A record inherits the structs of the table (quantities.hpp), so that the value is a member of the record by its name.
@@ -21,7 +21,7 @@
 
 namespace rvelab::records {
 
-/// A state that is measured. What several quantities share is made once, when the first of them is.
+/// A state that is measured. Intermediate results of several quantities are computed once, for the first of them.
 class MeasuredState {
  public:
   explicit MeasuredState(const Rve& measured) : rve(measured), network(measured.network()) {}
@@ -31,7 +31,7 @@ class MeasuredState {
     if (!relation_) relation_ = stress_force_fabric(network);
     return *relation_;
   }
-  std::size_t acting(Family family) const;  ///< interactions that act
+  std::size_t acting(Family family) const;  ///< number of active interactions
   double water_volume() const;              ///< of the bridges, m^3
   const ForceNetworks& networks() const {
     if (!networks_) networks_ = force_networks(network);
@@ -47,7 +47,7 @@ struct QuantityText {
   const char* name;  ///< in [output] quantities, in --json, and of the dataset under /records; ends in its unit
   const char* unit;  ///< "1" for a pure number
   const char* meaning;
-  bool usual = false;  ///< measured where a protocol does not say
+  bool usual = false;  ///< measured by default
 };
 
 /// A row of the table without the type of its struct.

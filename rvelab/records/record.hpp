@@ -1,4 +1,4 @@
-// One row of a test: what is written at each recorded strain, and the table of a whole test.
+// One row of a test, written at each recorded strain, and the table of a whole test.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 
 namespace rvelab::records {
 
-/// What every record says. Laboratory frame; stress tension positive. Strains count from the start of the stage.
+/// Common to all records. Laboratory frame; stress tension positive. Strains count from the start of the stage.
 struct RecordedState {
   std::int32_t stage = 0;  ///< row of the protocol's stages
   double strain = 0;       ///< the stage's driving strain: axial (compression positive, 1 - F_aa), gamma, ... (README)
@@ -23,27 +23,27 @@ struct RecordedState {
   long substeps = 0;         ///< made since the record before
   double held_error = 0;     ///< largest error of a held stress over its scale
   bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (at a rate)
-  bool quasi_static = true;  ///< false: kept, but no equilibrium (Report::in_equilibrium); at a rate: not judged
+  bool quasi_static = true;  ///< false: kept, but not in equilibrium (Report::in_equilibrium); at a rate: always true
 
   double error_estimate = 0;  ///< Report::error_estimate over p; 0: not judged (at a rate, no increment, no pressure)
 
-  bool cell_thin = false;  ///< a cell height is below four mean diameters: the record stands for less of the material
+  bool cell_thin = false;  ///< a cell height is below four mean diameters: the record is less representative
 
-  std::uint64_t quantities = usual_quantities;  ///< bits of those that were measured
+  std::uint64_t quantities = usual_quantities;  ///< bits of the measured ones
 };
 
-/// A recorded state with the quantities measured at it (quantities.hpp), each a member by its name; those that were not
-/// asked for are zero.
+/// A recorded state with its quantities (quantities.hpp), each a member by its name; those that were not requested are
+/// zero.
 struct Record : RecordedState, Quantities {};
 
-/// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D,
-/// 6x6 in 3D.
+/// Result of a probe stage: stiffness in the form of elastic_tangent() (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D, 6x6
+/// in 3D.
 struct ProbeResult {
   std::string stage;  ///< its name
   Eigen::MatrixXd stiffness;
 };
 
-/// A test that was run: its records in order, and what it was.
+/// A test that was run: its records in order, and its description.
 struct TestResult {
   std::string protocol;  ///< [test] name
   std::string axis;      ///< loading axis: "x", "y", "z", or "xy" / "xz" for simple shear; empty: none
@@ -55,7 +55,7 @@ struct TestResult {
   unsigned long long grain_steps = 0;
 };
 
-/// Measures what record.quantities asks for at the state of an Rve.
+/// Measures the quantities of record.quantities at the state of an Rve.
 inline void measure_quantities(Record& record, const Rve& rve) {
   if (record.quantities == 0) return;
   const MeasuredState state(rve);

@@ -1,5 +1,5 @@
-// The fields of records and of progress, once for every way in which they are kept: the datasets of R.h5 and the frames
-// of its journal. Each description is a template over the archive that writes or reads (rvelab/io/hdf5/archive.hpp).
+// The fields of records and of progress, described once for all their files: the datasets of R.h5 and the frames of its
+// journal. Each description is a template over the archive that writes or reads (rvelab/io/hdf5/archive.hpp).
 #pragma once
 
 #include "rvelab/records/progress.hpp"
@@ -15,7 +15,7 @@ constexpr Member Record::*in_record(Member Part::*member) {
 }
 
 /// Every column of a record. Value: std::vector<Record>, const or not. Of the quantities (quantities.hpp) a file holds
-/// the columns that were asked for; a frame of the journal holds all, and which of them count.
+/// the requested columns; a frame of the journal has all, and the bits of the valid ones.
 template <class Archive, class Value>
 void describe_records(Archive& archive, Value& records) {
   const auto column = [](const char* name, auto member, const char* unit) {
@@ -41,8 +41,8 @@ void describe_records(Archive& archive, Value& records) {
   });
 }
 
-/// Every field of a running test's progress; a structured binding, so that a new one does not compile until it is here.
-/// The wall time stands under /provenance, and is the caller's.
+/// Every field of the progress of a running test; by a structured binding, so that a new field does not compile until
+/// it is added here. The caller stores the wall time under /provenance.
 template <class Archive, class Value>
 void describe_progress(Archive& archive, Value& progress) {
   auto& [stage, phase, step, relaxation_steps, substeps, records, probes, unbalanced_ratio, first_pressure, rate,

@@ -1,8 +1,8 @@
-// What curves can be made of. Declared in test.hpp.
+// The quantities of curves. Declared in test.hpp.
 //
-// Errors: the estimate e of a record bounds the error of its stress by e p (rvelab/README.md, Accuracy). Of first order
-// it is e p for stresses, at most e (1 + q/p) for q/p, and of the mobilised angle, sin phi = t/s, at most
-// (e p/s)(1 + sin phi)/cos phi.
+// Errors: the estimate e of a record bounds the error of its stress by e p (rvelab/README.md, Accuracy). To first order
+// the bound is e p for stresses, e (1 + q/p) for q/p, and (e p/s)(1 + sin phi)/cos phi for the mobilised angle,
+// sin phi = t/s.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -116,7 +116,7 @@ void add_stresses(Columns& columns, const Test& test) {
       [](const Record& record) { return Matrix3(-0.5 * (record.stress + record.stress.transpose())); }, true);
 }
 
-/// Those of the table of quantities that were measured.
+/// The measured quantities of the table.
 void add_quantities(Columns& columns, const Test& test) {
   const std::uint64_t measured = test.records().back().quantities;
   records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
@@ -162,7 +162,7 @@ std::vector<Column> columns_of(const Test& test) {
   add_stresses(columns, test);
   add_quantities(columns, test);
   add_solver(columns, test);
-  // A column that is zero or undefined in all records says nothing.
+  // A column that is zero or undefined in all records is omitted.
   std::erase_if(columns.all, [](const Column& column) {
     return std::all_of(column.values.begin(), column.values.end(),
                        [](double value) { return value == 0 || std::isnan(value); });

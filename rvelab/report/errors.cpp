@@ -1,4 +1,4 @@
-// How large the errors of the stresses are, as a table and in words. Declared in tables.hpp.
+// Errors of the stresses as a table and in words. Declared in tables.hpp.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 struct Estimates {
   std::size_t judged = 0;
   double sum = 0, largest = 0;
-  const Test* test = nullptr;  ///< that has the largest
+  const Test* test = nullptr;  ///< test with the largest error
   std::size_t record = 0;
   double mean() const { return sum / double(judged); }
 };

@@ -1,4 +1,4 @@
-// What a page is told, as JSON: numbers to six digits, which is more than a picture shows; what is not defined is null.
+// Data of a page as JSON: numbers with six digits, more than a picture resolves; undefined values are null.
 #pragma once
 
 #include <cmath>

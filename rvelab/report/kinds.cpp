@@ -1,4 +1,4 @@
-// Which tests differ by their specimen alone. Declared in test.hpp.
+// Groups of tests that differ only by their specimen. Declared in test.hpp.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -62,7 +62,7 @@ std::vector<Kind> kinds_of(const std::vector<Test>& tests) {
   std::vector<double> logs;
   for (const Test& test : tests) logs.push_back(std::log(std::max(std::abs(test.pressure), 1e-300)));
   const std::vector<int> pressures = classes_of(logs, pressure_gap);
-  // The void ratio falls with the pressure of a test: it tells specimens apart at one pressure only.
+  // The void ratio falls with the pressure of a test: it distinguishes specimens only at equal pressure.
   std::vector<int> voids(n, 0);
   for (int each = 0; each <= *std::max_element(pressures.begin(), pressures.end()); ++each) {
     std::vector<std::size_t> here;
@@ -114,7 +114,7 @@ std::vector<Kind> kinds_of(const std::vector<Test>& tests) {
     if (several_pressures || kind.label.empty()) add(in_kPa(kind.pressure));
     kinds.push_back(std::move(kind));
   }
-  // Tests of other settings or materials that nothing else tells apart go by the name of their first file.
+  // Tests of different settings or materials with equal labels have the name of their first file as label.
   std::map<std::string, int> uses;
   for (const Kind& kind : kinds) ++uses[kind.label];
   for (Kind& kind : kinds)

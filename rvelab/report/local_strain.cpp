@@ -11,7 +11,7 @@ namespace {
 
 using Matrices = std::vector<Matrix3>;
 
-/// Adds to each grain what its neighbours have.
+/// Adds to each grain the values of its neighbours.
 Matrices with_neighbours(const Network& network, const Matrices& own) {
   Matrices sum = own;
   for (const ContactState& contact : network.contacts) {
@@ -42,7 +42,7 @@ void Motion::go_on(const Network& before, const Network& after, const Matrix3& d
     steps[g] = moved - lattice * cells;
     mean += steps[g] / double(n);
   }
-  // The cell may drift as a whole, which is no strain.
+  // A drift of the whole cell is no strain.
   for (std::size_t g = 0; g < n; ++g) {
     steps[g] -= mean;
     fluctuation[g] = deformation * fluctuation[g] + steps[g];
@@ -60,9 +60,9 @@ void Motion::go_on(const Network& before, const Network& after, const Matrix3& d
   for (std::size_t g = 0; g < n; ++g) {
     shear[g] = volume[g] = ensemble::nan;
     Matrix3 square = moment[g];
-    if (d == 2) square(2, 2) = 1;  // nothing moves out of the plane
+    if (d == 2) square(2, 2) = 1;  // no motion out of the plane
     const double scale = moment[g].trace();
-    // Branches along one line say nothing of the strain across it.
+    // Branches along one line do not determine the strain across it.
     const double spread = square.determinant() / (d == 2 ? scale * scale : scale * scale * scale);
     if (!(scale > 0) || !(spread > 1e-4)) continue;
     const Matrix3 H = deformation - I + gradient[g] * square.inverse();

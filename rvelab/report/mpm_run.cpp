@@ -25,7 +25,7 @@ struct MpmField {
   double factor;
   bool about_zero;
 };
-/// What points may hold; of vectors the length is shown.
+/// Possible fields of points; vectors are shown by their length.
 constexpr MpmField mpm_fields[] = {
     {"eps_q", "eps_q", "deviatoric strain", "%", 100, false},
     {"displacement_m", "displacement", "displacement", "m", 1, false},
@@ -82,7 +82,7 @@ Json rocks_of(const std::string& path, int dimension) {
       rock.push_back(number(std::sqrt(std::max(0.0, solver.eigenvalues()[0]))));
       rock.push_back(number(std::atan2(solver.eigenvectors()(1, 1), solver.eigenvectors()(0, 1))));
     } else {
-      for (int c = 0; c < 9; ++c) rock.push_back(number(A(c % 3, c / 3)));  // one half axis after the other
+      for (int c = 0; c < 9; ++c) rock.push_back(number(A(c % 3, c / 3)));  // half axes in sequence
     }
     rocks.push_back(std::move(rock));
   }
@@ -197,7 +197,7 @@ MpmRun read_mpm_run(const std::string& folder, double largest) {
   json["found"] = paths.size();
   json["dimension"] = dimension;
 
-  // One box around all frames, which the positions are parts of.
+  // One box around all frames; positions are fractions of it.
   Vector3 low = Vector3::Constant(1e300), high = Vector3::Constant(-1e300);
   double smallest = 1e300, widest = 0;
   std::vector<double> all[std::size(mpm_fields)];

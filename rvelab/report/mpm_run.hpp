@@ -1,4 +1,4 @@
-// A run of rvelab-mpm as a page tells it: curves of its history.csv, points coloured by what they hold, rocks.
+// A run of rvelab-mpm in a page: curves of its history.csv, points coloured by their fields, rocks.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace rvelab::report {
 
-/// Whether a folder is one that rvelab-mpm wrote.
+/// Whether rvelab-mpm wrote the folder.
 bool is_mpm_run(const std::string& folder);
 
 struct MpmRun {
   Json json;
   std::size_t states = 0;
 };
-/// `largest`: bytes that its states may take; then they are every n-th frame and the last. InputError: a file of it
-/// cannot be read.
+/// `largest`: limit of the bytes of its states; above it every n-th frame and the last are kept. InputError: a file of
+/// it cannot be read.
 MpmRun read_mpm_run(const std::string& folder, double largest);
 
 }  // namespace rvelab::report

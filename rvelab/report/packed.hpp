@@ -1,4 +1,4 @@
-// Numbers of a state as a page carries them: little-endian arrays, compressed (zlib) and as base64.
+// Numbers of a state in a page: little-endian arrays, compressed (zlib) and as base64.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ class Packed {
   void add(std::uint32_t value) { add_bytes(value, 4); }
   void add(float value);
 
-  /// 0 to 65534 for `low` to `high`, 65535 for what is not a number. A page divides by 65534 again.
+  /// 0 to 65534 for `low` to `high`, 65535 for NaN. The page divides by 65534.
   void add_within(double value, double low, double high);
-  /// Part of a period: 0 to 65535 for 0 to 1, which is 0 again.
+  /// Fraction of a period: 0 to 65535 for 0 to 1; 1 is equal to 0.
   void add_part(double part);
 
   std::size_t size() const { return bytes_.size(); }

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct Inputs {
   struct File {
     std::string path, group;
-    bool named;  ///< by itself, not by its folder
+    bool named;  ///< given directly, not by its folder
   };
   std::vector<File> records;
   std::vector<std::string> runs;  ///< folders of rvelab-mpm
@@ -63,7 +63,7 @@ Inputs sorted_inputs(const std::vector<std::string>& inputs) {
   return found;
 }
 
-/// Whether a file holds a specimen alone, which may lie beside the records of a folder.
+/// Whether a file contains only a specimen, which is allowed beside the records of a folder.
 bool is_specimen(const std::string& path) { return fs::exists(path) && io::file_kind(path) == io::FileKind::specimen; }
 
 Json as_json(const std::vector<Column>& columns) {
@@ -105,7 +105,7 @@ Curves curves_of(const Test& test) {
   return {{"strain", "q_over_p"}, {"strain", "volumetric_strain"}};
 }
 
-/// These, and one of each kind of interaction that the records count: bonds, bridges of water, adhesive pairs.
+/// These, and one for each recorded kind of interaction: bonds, bridges of water, adhesive pairs.
 Curves with_interactions(Curves curves, const std::vector<Column>& columns) {
   for (const std::string key : {"bonds", "bridges", "adhesive_pairs"})
     if (std::any_of(columns.begin(), columns.end(), [&](const Column& column) { return column.key == key; }))
@@ -153,7 +153,7 @@ Json section_of(const std::string& name, const std::vector<Test>& tests, std::si
   return section;
 }
 
-/// Text of HTML, also within a script: no tag can begin in it.
+/// Text of HTML, also within a script: escaped so that no tag can begin in it.
 std::string without_tags(std::string text) {
   std::string safe;
   for (const char letter : text) safe += letter == '<' ? std::string("\\u003c") : std::string(1, letter);

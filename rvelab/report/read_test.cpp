@@ -1,4 +1,4 @@
-// A record file as a page needs it. Declared in test.hpp.
+// The data of a record file for a page. Declared in test.hpp.
 #include <filesystem>
 
 #include "rvelab/protocol/stage_kinds.hpp"
@@ -7,7 +7,7 @@
 namespace rvelab::report {
 namespace {
 
-/// F since the start of the test: a stage begins where the one before ended.
+/// F since the start of the test: a stage begins at the end of the one before.
 std::vector<Matrix3> deformation_of(const std::vector<records::Record>& records) {
   std::vector<Matrix3> found;
   Matrix3 before = Matrix3::Identity();
@@ -18,7 +18,7 @@ std::vector<Matrix3> deformation_of(const std::vector<records::Record>& records)
   return found;
 }
 
-/// Pa, compression positive: the lateral stress that the last stage holds, else p at its first record.
+/// Pa, compression positive: the held lateral stress of the last stage; without one p at its first record.
 double pressure_of(const Test& test) {
   const auto last = calibrate::last_stage(test.recorded.result);
   const protocol::Stage& stage = test.protocol.stages.at(std::size_t(last.front().stage));

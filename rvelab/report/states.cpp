@@ -20,10 +20,10 @@ namespace {
 using ensemble::nan;
 constexpr double pi = std::numbers::pi;
 
-/// What is drawn as the colour of grains, a value a grain.
+/// A field that colours the grains, one value per grain.
 struct Field {
   const char *key, *label, *unit;
-  bool about_zero;  ///< zero lies in the middle of the colours
+  bool about_zero;  ///< zero is in the middle of the colour scale
   std::vector<std::vector<double>> of_states = {};
 };
 
@@ -64,7 +64,7 @@ void measure(const Specimen& specimen, const Network& network, const Motion& mot
   }
 }
 
-/// Value below which a part of the finite ones lies.
+/// Quantile of the finite values.
 double quantile(std::vector<double> values, double part) {
   if (values.empty()) return nan;
   const auto place = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
@@ -102,7 +102,7 @@ void pack_contacts(const State& state, double largest_force, Packed& packed) {
   };
   each([&](const ContactState& contact) { pack_row(contact.i); });
   each([&](const ContactState& contact) { pack_row(contact.j); });
-  // The image of j as a page draws it: both grains lie in the cell there, rounded as pack_grains rounds them.
+  // The image of j as drawn in a page: there both grains are in the cell, rounded as by pack_grains.
   const Matrix3 inverse = network.cell.lattice.inverse();
   const auto drawn = [&](std::int32_t g, int k) {
     const double part = inverse.row(k).dot(network.grains[std::size_t(g)].position) + 0.5;
@@ -125,7 +125,7 @@ void pack_contacts(const State& state, double largest_force, Packed& packed) {
     });
 }
 
-/// Half lengths of the grains, m: major then minor of ellipses, else the radius.
+/// Half lengths of the grains, m: of ellipses major then minor, otherwise the radius.
 Packed sizes_of(const State& state) {
   Packed packed;
   const auto add = [&](const std::vector<double>& column) {

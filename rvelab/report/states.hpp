@@ -1,4 +1,4 @@
-// States of a test as a page draws them: grains in their cell, their contacts, and what each grain bears and does.
+// States of a test for a page: grains in their cell, their contacts, and fields of the grains.
 //
 // A state is packed (packed.hpp), little-endian, one array after the other:
 //   lattice       9 float32, m, column by column, laboratory frame; the cell's centre is the origin
@@ -10,24 +10,24 @@
 //   force         uint16: normal force over the largest of the run times 65534
 //   friction      uint8: tangential force over its limit times 255
 //   normal        ellipses: uint16, the angle of the normal over 2 pi times 65536
-// Positions are so exact to 1/130,000 of the cell, the 3,000th part of a mean diameter in a cell of twenty-odd.
+// The error of positions is at most 1/130,000 of the cell, 1/3,000 of a mean diameter in a cell of some twenty.
 #pragma once
 
 #include "rvelab/report/test.hpp"
 
 namespace rvelab::report {
 
-/// States of a test that are kept in a page: all `every`-th snapshots, the first and the end.
+/// States of a test in a page: every `every`-th snapshot, the first and the end.
 struct ChosenStates {
   std::vector<std::size_t> snapshots;  ///< rows of RecordedTest::snapshots
-  bool end = true;                     ///< the end state is none of the snapshots
+  bool end = true;                     ///< the end state is not among the snapshots
 };
 ChosenStates chosen_states(const Test& test, std::size_t every);
 
-/// Bytes that the states of a test take before they are compressed, all of them.
+/// Bytes of all states of a test before compression.
 double bytes_of_states(const Test& test);
 
-/// What a page is told of the states of one test.
+/// Data of the states of one test for a page.
 Json states_of(const Test& test, const ChosenStates& chosen);
 
 }  // namespace rvelab::report

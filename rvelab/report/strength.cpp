@@ -16,7 +16,7 @@ const Spread* spread_of(const Results& results, std::size_t set, const std::stri
   return nullptr;
 }
 
-/// Mean angle at large strain over all tests of the set; NaN where one does not go so far.
+/// Mean angle at large strain over all tests of the set; NaN if one ends before.
 double large_strain_angle(const std::vector<Test>& tests, const std::vector<Kind>& kinds, std::size_t set) {
   std::size_t place = 0;
   while (ensemble::measures()[place].name != "large_strain_friction_angle_deg") ++place;

@@ -49,7 +49,7 @@ std::string plain(const toml::node& node) {
   return list;
 }
 
-/// Diameters below which a part of the mass lies, m.
+/// Diameters for given shares of the mass passing, m.
 std::vector<double> grading_of(const Specimen& specimen, int dimension, const std::vector<double>& parts) {
   std::vector<double> radii = specimen.grains.radius;
   std::sort(radii.begin(), radii.end());
@@ -85,7 +85,7 @@ std::vector<ensemble::TestOf> as_ensemble(const std::vector<Test>& tests, const 
   for (const Kind& kind : kinds)
     for (const std::size_t k : kind.of) {
       const Test& test = tests[k];
-      // Without a checksum of the specimen each test counts as one of its own.
+      // Without a checksum of the specimen each test counts as a separate specimen.
       const std::uint64_t sum = test.recorded.provenance.specimen_crc32c;
       const std::size_t specimen =
           specimens.emplace(sum != 0 ? sum : std::uint64_t(-1) - k, specimens.size()).first->second;
@@ -183,7 +183,7 @@ std::vector<std::string> names_of_sets(const std::vector<Kind>& kinds) {
   std::vector<std::string> names;
   for (const Kind& kind : kinds) {
     std::string label = kind.label;
-    // Without the pressure, which tells kinds of one set apart.
+    // Without the pressure, which distinguishes kinds of one set.
     if (const auto at = label.rfind(", "); label.ends_with(" kPa") && at != std::string::npos) label.erase(at);
     if (kind.set == names.size()) names.push_back(label);
   }

@@ -8,7 +8,7 @@
 
 namespace rvelab::report {
 
-/// Number of tests, pressures, stages with the keys of the protocol that say what was asked.
+/// Number of tests, pressures, stages with their keys of the protocol.
 Table asked_of(const std::vector<Test>& tests, const std::vector<Kind>& kinds);
 
 /// Grains, grading, cell, void ratio, contact law, materials of the first test.
@@ -20,15 +20,15 @@ struct Results {
   Table means, differences;
 };
 Results results_of(const std::vector<Test>& tests, const std::vector<Kind>& kinds);
-/// What tells a set of kinds from the others; "" where there is one.
+/// The distinguishing label of a set of kinds; "" if there is only one.
 std::vector<std::string> names_of_sets(const std::vector<Kind>& kinds);
 
-/// Loops of cyclic stages: amplitude, shear modulus, damping; only the head where there is none.
+/// Loops of cyclic stages: amplitude, shear modulus, damping; only the head if there are none.
 Table loops_of(const std::vector<Test>& tests);
 
-/// A row a test: records, doubtful ones, error estimate, run time.
+/// One row per test: records, flagged ones, error estimate, run time.
 Table errors_of(const std::vector<Test>& tests);
-/// How large the errors of the stresses are, and where they are largest.
+/// Errors of the stresses, and the record with the largest.
 std::string errors_in_words(const std::vector<Test>& tests);
 
 }  // namespace rvelab::report

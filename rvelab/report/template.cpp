@@ -1,6 +1,6 @@
 #include "rvelab/report/template.hpp"
 
-// A program that carries its page needs no file beside it. RVELAB_REPORT_PAGE is the path of the file.
+// The page is part of the program, so that no separate file is needed. RVELAB_REPORT_PAGE is the path of the file.
 asm(".section .rodata\n"
     ".global rvelab_report_page_begin\n"
     "rvelab_report_page_begin:\n"

@@ -1,4 +1,4 @@
-// tools/report/page.html, as it stands in this program.
+// tools/report/page.html as part of this program.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// A recorded test as a page tells it, and the tests of one name together. Compression is positive in a page.
+// A recorded test in a page, and the tests of one name together. Compression is positive in a page.
 #pragma once
 
 #include <optional>
@@ -13,41 +13,41 @@
 
 namespace rvelab::report {
 
-/// A record file that was read.
+/// The content of a record file.
 struct Test {
   std::string path, file;  ///< as given; without its folder
-  std::string group;       ///< folder of the file, relative to what was given
+  std::string group;       ///< folder of the file, relative to the given path
   io::RecordedTest recorded;
   protocol::Protocol protocol;
   int dimension = 2;
   std::vector<double> measured;           ///< of ensemble::measures()
-  calibrate::PrincipalStresses strength;  ///< Pa; NaN: the test leads to no strength
+  calibrate::PrincipalStresses strength;  ///< Pa; NaN: the test has no strength
 
   const std::vector<records::Record>& records() const { return recorded.result.records; }
-  /// Stress that tests of one kind differ by: p at the first record of the last stage, or the held lateral one, Pa.
+  /// Stress that distinguishes tests of one kind: p at the first record of the last stage, or the held lateral one, Pa.
   double pressure = 0;
   /// F since the start of the test at each record: that of the stage times that at the end of the stages before.
   std::vector<Matrix3> deformation;
 };
 
-/// Reads it; nothing where no record was made, as by a test of probes alone. InputError: no record file.
+/// Reads it; empty without records, as for a test of probes only. InputError: not a record file.
 std::optional<Test> read_test(const std::string& path, const std::string& group);
 
 /// A quantity over the records of a test.
 struct Column {
   std::string key, label, unit, meaning;
   std::vector<double> values;
-  std::vector<double> errors;  ///< by the error estimate of the record; none: it has no such
+  std::vector<double> errors;  ///< from the error estimate of the record; empty: the quantity has no error
 };
 
-/// Everything that curves can be made of, in the units of a page (kPa, %, degrees).
+/// All quantities of curves, in the units of a page (kPa, %, degrees).
 std::vector<Column> columns_of(const Test& test);
 
-/// A key of each kind of test: those of one kind differ by their specimen alone.
+/// A key of each kind of test: tests of one kind differ only by their specimen.
 struct Kind {
-  std::string label;            ///< what tells it from the others
+  std::string label;            ///< distinguishes it from the others
   std::vector<std::size_t> of;  ///< rows of the tests
-  std::size_t set = 0;          ///< kinds of one set differ by their pressure alone
+  std::size_t set = 0;          ///< kinds of one set differ only by their pressure
   double pressure = 0;          ///< Pa, mean of its tests
 };
 

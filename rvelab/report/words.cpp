@@ -9,7 +9,7 @@
 namespace rvelab::report {
 namespace {
 
-/// With a minus sign in the place of the hyphen before a number.
+/// With a minus sign instead of the hyphen before a number.
 std::string with_minus(const std::string& text) { return text.starts_with('-') ? "\u2212" + text.substr(1) : text; }
 
 }  // namespace
@@ -17,15 +17,16 @@ std::string with_minus(const std::string& text) { return text.starts_with('-') ?
 std::string in_three_digits(double value) {
   if (!std::isfinite(value)) return "-";
   if (value == 0) return "0";
-  // 99,950 becomes 100,000 when it is rounded: the size is that of the rounded number.
+  // 99,950 becomes 100,000 by rounding: the power is that of the rounded number.
   char text[32];
   std::snprintf(text, sizeof text, "%.2e", value);
-  const int place = std::stoi(std::string(text).substr(std::string(text).find('e') + 1));
-  const int power = place >= 5 || place < -3 ? 3 * int(std::floor(place / 3.0)) : 0;
-  std::snprintf(text, sizeof text, "%.*f", std::max(0, 2 - (place - power)), value / std::pow(10.0, power));
+  const int decade = std::stoi(std::string(text).substr(std::string(text).find('e') + 1));
+  const int power = decade >= 5 || decade < -3 ? 3 * int(std::floor(decade / 3.0)) : 0;
+  std::snprintf(text, sizeof text, "%.*f", std::max(0, 2 - (decade - power)), value / std::pow(10.0, power));
   std::string whole = text;
-  if (place - power > 2) {  // zeros in the place of digits that are not meant
-    std::snprintf(text, sizeof text, "%.0f", std::round(value / std::pow(10.0, place - 2)) * std::pow(10.0, place - 2));
+  if (decade - power > 2) {  // zeros instead of digits that are not significant
+    std::snprintf(text, sizeof text, "%.0f",
+                  std::round(value / std::pow(10.0, decade - 2)) * std::pow(10.0, decade - 2));
     whole = text;
   }
   return with_minus(whole) + (power != 0 ? "e" + std::to_string(power) : "");

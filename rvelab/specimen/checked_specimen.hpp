@@ -1,4 +1,4 @@
-// A specimen under check: what its checks share, and how they name what is wrong.
+// A specimen under check: common parts of its checks, and the names of fields in their messages.
 #pragma once
 
 #include <charconv>
@@ -13,7 +13,7 @@
 
 namespace rvelab {
 
-/// As many digits as tell it from the end of a range.
+/// With sufficient digits to distinguish it from the end of a range.
 inline std::string digits_of(double value) {
   char digits[32];
   return {digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr};
@@ -21,10 +21,10 @@ inline std::string digits_of(double value) {
 
 struct CheckedSpecimen {
   const Specimen& s;
-  const std::string& where;  ///< what stands before the name of a field, such as a path
+  const std::string& where;  ///< text before the name of a field, such as a path
 
   [[noreturn]] void refuse(const std::string& what) const { advise(what + "; correct it, or make the specimen again"); }
-  /// The same of what has a remedy of its own.
+  /// The same for a message that contains its remedy.
   [[noreturn]] void advise(const std::string& what) const { throw InputError(where + what); }
 
   static std::string at(const std::string& field, std::size_t k) { return field + ("[" + std::to_string(k) + "]"); }
@@ -41,7 +41,7 @@ struct CheckedSpecimen {
            std::to_string(c.image[1]) + ", " + std::to_string(c.image[2]) + ")";
   }
 
-  /// Pairs of grains that there are, each once and in order. `each`: what one is called.
+  /// Pairs of existing grains, each once and in order. `each`: the name of one pair.
   template <class Item>
   void check_pairs(const std::string& group, const std::string& each, const std::vector<Item>& items) const {
     const std::size_t n = s.grains.size();
@@ -56,7 +56,7 @@ struct CheckedSpecimen {
         refuse(pair(group, c, k) + " stands twice; allowed: each " + each + " once");
       if (k > 0 && pair_of(c) < pair_of(items[k - 1]))
         refuse(pair(group, c, k) + " is out of order; allowed: " + group + " sorted by i, then j, then image");
-      for (std::size_t d = 0; d < c.image.size(); ++d)  // cells that are reduced add to it
+      for (std::size_t d = 0; d < c.image.size(); ++d)  // reduction of the cell increases it
         if (std::abs(double(c.image[d])) > 1e9)
           refuse(group + "/image[" + std::to_string(k) + ", " + std::to_string(d) +
                  "] = " + std::to_string(c.image[d]) + " is out of range; allowed: -1e9 to 1e9");

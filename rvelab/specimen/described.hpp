@@ -1,12 +1,12 @@
-// Structs described member by member, once for every way in which their values are kept, and the guard that no member
-// is forgotten. The description of a struct is a specialisation of members_of:
+// Structs described member by member, once for all files of their values, with a check that the description is
+// complete. The description of a struct is a specialisation of members_of:
 //
 //     template <>
 //     inline constexpr auto members_of<Cell> = std::tuple{Field{"lattice_m", &Cell::lattice, "m"}, ...};
 //
 // It is complete if it has as many entries as the struct has members and no two of them are the same member. The first
-// is counted by how many initialisers the aggregate takes, the second by comparing the pointers to members: a member
-// that is added and not described, or described twice in another's place, does not compile.
+// is checked by the number of initialisers of the aggregate, the second by comparing the pointers to members: a new
+// member without a description, or a repeated description, does not compile.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +21,16 @@
 namespace rvelab::fields {
 
 /// Entries of a field: one value, or a list with one for each grain. In a table each column has one for each row.
-/// `per_grain_or_left_out`: a file has no dataset where there are none.
+/// `per_grain_or_left_out`: a file has no dataset for an empty list.
 enum class Rows { one, per_grain, per_grain_or_none, per_grain_or_left_out };
 
-/// Where the vectors of a field lie in 2D: anywhere, in the plane (z = 0), along its normal (x = y = 0), or as the one
-/// component along the tangent of a contact (y = z = 0).
+/// Direction of the vectors of a field in 2D: any, in the plane (z = 0), along its normal (x = y = 0), or one component
+/// along the tangent of a contact (y = z = 0).
 enum class InPlane { any, along, normal, tangent };
 
-/// One member: its name in a file, its unit ("1" for a pure number, "-" for text) and what its numbers may be: finite
-/// and in this range, of vectors and matrices each component. What fields must be beside one another is in
-/// specimen_check.cpp, body_check.cpp and interaction_check.cpp.
+/// One member: its name in a file, its unit ("1" for a pure number, "-" for text) and its range: finite numbers in this
+/// range, for vectors and matrices each component. Conditions between fields are in specimen_check.cpp, body_check.cpp
+/// and interaction_check.cpp.
 template <class Owner, class Value>
 struct Field {
   const char* name;
@@ -72,7 +72,7 @@ struct Table {
 template <class Owner, class Item>
 Table(const char*, std::vector<Item> Owner::*) -> Table<Owner, Item>;
 
-/// Whether a file leaves out a table of these that is empty.
+/// Whether a file omits an empty table of these.
 template <class Item>
 inline constexpr bool left_out_where_empty = false;
 
@@ -80,8 +80,8 @@ inline constexpr bool left_out_where_empty = false;
 template <class Struct>
 inline constexpr std::tuple<> members_of{};
 
-/// Name of a field after those of the parts that it lies in, "state/energy_balance/friction_J". Composed only when it
-/// is asked for: a snapshot does without.
+/// Name of a field with those of its parts, "state/energy_balance/friction_J". Composed only on request: a snapshot
+/// does not need it.
 class Path {
  public:
   Path(const Path* within, const char* name) : within_(within), name_(name) {}
@@ -92,13 +92,13 @@ class Path {
   const char* name_;
 };
 
-/// Takes the place of any initialiser.
+/// Converts to any initialiser.
 struct AnyValue {
   template <class Value>
   operator Value() const;
 };
 
-/// Members of an aggregate: the most initialisers that it takes. (An array written as T[n] would count as n.)
+/// Number of members of an aggregate: its largest number of initialisers. (An array declared as T[n] would count as n.)
 template <class Struct, class... Given>
 consteval std::size_t member_count() {
   static_assert(std::is_aggregate_v<Struct>, "only the members of an aggregate can be counted");
@@ -109,7 +109,7 @@ consteval std::size_t member_count() {
   }
 }
 
-/// Members that a struct has by inheritance, less one initialiser for each base.
+/// Number of inherited members of a struct, minus one initialiser for each base.
 template <class Struct>
 inline constexpr std::size_t inherited_members = 0;
 
@@ -126,14 +126,14 @@ constexpr bool all_distinct(const First& first, const Rest&... rest) {
   return (are_distinct(first, rest) && ...) && all_distinct(rest...);
 }
 
-/// Parts and tables have no rows of their own to say.
+/// Parts and tables do not declare rows.
 constexpr bool says_its_rows(const auto&) { return true; }
 template <class Owner, class Value>
 constexpr bool says_its_rows(const Field<Owner, Value>& field) {
   return Listed<Value>::is_list == (field.rows != Rows::one);
 }
 
-/// Whether each member of the struct is described, once and under a name of its own.
+/// Whether each member of the struct is described once, under a unique name.
 template <class Struct>
 consteval bool describes_every_member() {
   return std::apply(

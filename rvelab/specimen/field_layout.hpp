@@ -1,6 +1,6 @@
-// How one value of a field lies in bytes: as text, or as scalars of one type in a fixed order. Snapshots and files
-// share it, so that each field type is taken apart in one place. Truth values are uint8, enumerations their names,
-// vectors and images rows of three, 3x3 matrices row-major. Doubles keep every bit.
+// The bytes of one value of a field: text, or scalars of one type in a fixed order. Snapshots and files share this
+// layout. Booleans are uint8, enumerations their names, vectors and images rows of three, 3x3 matrices row-major.
+// Doubles keep every bit.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace rvelab::fields {
 
-/// Text for a value that is text or an enumeration, and the way back (InputError listing the names).
+/// Text for a value that is text or an enumeration, and the inverse (InputError listing the names).
 inline std::string text_of(const std::string& value) { return value; }
 template <class Enumeration>
 std::string text_of(Enumeration value) {
@@ -56,9 +56,9 @@ struct Listed<std::vector<Value>> {
   static constexpr bool is_list = true;
 };
 
-/// How one numeric value lies in bytes: the scalar's type, and the extents of one value, outermost first. `in_order`:
-/// the value in memory is its scalars in that order and nothing else, so that a list of them can be copied whole.
-/// A long has 64 bits in a file, whatever it has in memory (32 in WebAssembly).
+/// Layout of one numeric value: the scalar's type, and the extents of one value, outermost first. `in_order`: the value
+/// in memory consists of its scalars in that order, so that a list of them can be copied as a whole. A long has 64 bits
+/// in a file, also if it has 32 in memory (WebAssembly).
 template <class Value>
 struct Layout {
   static_assert(std::is_arithmetic_v<Value>);

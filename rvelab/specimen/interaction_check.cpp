@@ -25,14 +25,14 @@ class InteractionCheck : CheckedSpecimen {
   }
 
  private:
-  /// What interactions of a law form from.
+  /// The parameters from which interactions of a law form.
   template <class Law>
   void check_settings() const {
     const auto& rows = static_cast<const SettingsOf<Law>&>(s).settings;
     const std::string name = Law::settings_name;
     if (rows.empty() && !static_cast<const ListOf<Law>&>(s).items.empty())
       refuse(std::string(Law::name) + " without " + name + "; allowed: with one row of " + name +
-             ", which says what they form from");
+             ", the parameters from which they form");
     if (rows.size() > 1)
       refuse(name + " has " + std::to_string(rows.size()) + " rows; allowed: none, or one for all grains");
     if (rows.empty()) return;
@@ -50,8 +50,8 @@ class InteractionCheck : CheckedSpecimen {
     refuse(values + "; allowed: " + misfit);
   }
 
-  /// Numbers that stand for a state are whole; what a file has is there; what acts is about as long as when it was
-  /// made, or its image is another's and it would tear the grains apart in one step.
+  /// Numbers that encode a state are whole; stored interactions are present; an active one has about its initial
+  /// length. Otherwise its image is wrong, and it would tear the grains apart in one step.
   template <class Law>
   void check_interaction(const Interaction<Law>& item, std::size_t k) const {
     double columns[interaction_columns<Law>()];
@@ -60,7 +60,7 @@ class InteractionCheck : CheckedSpecimen {
     each_field<Law>(item, [&](const InteractionField& field, const auto& value) {
       if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
         if (!field.whole) return;
-        const bool presence = field.allowed.high == 1;  // a file holds what is there
+        const bool presence = field.allowed.high == 1;  // files contain only present interactions
         if (presence ? value != 1 : value != std::floor(value))
           refuse(at(std::string(Law::name) + "/" + field.name, k) + " = " + in_words(value) +
                  " is out of range; allowed: " + (presence ? "1, of what is there" : "a whole number"));

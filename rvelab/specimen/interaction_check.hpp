@@ -1,4 +1,4 @@
-// Bonds, bridges and adhesion beside grains and contacts, and what they form from.
+// Checks of bonds, bridges and adhesion against grains and contacts, and of the parameters from which they form.
 #pragma once
 
 #include "rvelab/specimen/checked_specimen.hpp"

@@ -1,4 +1,4 @@
-// Superellipsoids put into a specimen: each grain a body of its own.
+// Adding superellipsoids to a specimen: each grain is a separate body.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace rvelab {
 
-/// Adds a grain and its body behind those that are there. `position`: of its centre, cell frame; `orientation`: x y z
-/// of the shape to the cell frame.
+/// Appends a grain and its body. `position`: of its centre, cell frame; `orientation`: x y z of the shape to the cell
+/// frame.
 void add_superellipsoid(Specimen& specimen, const Superellipsoid& shape, const Vector3& position,
                         const Turn& orientation, std::int32_t material = 0);
 

@@ -1,5 +1,5 @@
-// A specimen: everything that an Rve is opened from and that decides its next bit. A plain value: importers and packers
-// make it, Rve::specimen() returns it. Its parts are aggregates; specimen_fields.hpp describes each of their members.
+// A specimen: the complete state from which an Rve is opened and that determines its next bit. A plain value: importers
+// and packers make it, Rve::specimen() returns it. Its parts are aggregates; specimen_fields.hpp describes each member.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 namespace rvelab {
 
 /// Grains, one entry each, in the order of their ids. Vectors are in the cell frame; in 2D z-components of position
-/// and velocity, and x and y of the spin, are zero. The columns of its shape stand before all others.
+/// and velocity, and x and y of the spin, are zero. The columns of its shape come before all others.
 struct Grains : OwnColumns<List> {
   std::vector<std::int64_t> id;
   std::vector<double> radius;          ///< m; of a shape that is not round that of the disc of its area
@@ -36,7 +36,7 @@ struct Grains : OwnColumns<List> {
 struct Contact {
   std::int32_t i = 0, j = 0;
   Image image{};
-  /// N, spring part (without dashpot). 2D: (f_t, 0, 0) with f_t along t = (-n_y, n_x), which no rotation changes.
+  /// N, spring part (without dashpot). 2D: (f_t, 0, 0) with f_t along t = (-n_y, n_x), invariant under rotation.
   Vector3 tangential_force = Vector3::Zero();
   Vector3 rolling_moment = Vector3::Zero();  ///< N m
   double last_root_overlap = 0;              ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
@@ -46,7 +46,7 @@ struct Contact {
 /// members; mass and inertia are those of their union, of the material of its members. Vectors are in the cell frame.
 struct Body {
   std::int64_t id = 0;
-  std::int32_t first = 0;  ///< row of its first member in Grains; its last stands before the next body's first
+  std::int32_t first = 0;              ///< row of its first member in Grains; its last is before the next body's first
   Vector3 position = Vector3::Zero();  ///< m, centre of gravity
   Vector3 velocity = Vector3::Zero();  ///< as that of grains
   Vector3 spin = Vector3::Zero();  ///< as that of grains; at a rate that of the angular momentum at the last half step
@@ -56,12 +56,12 @@ struct Body {
                                        ///< three that about z
 };
 
-/// Where a grain stands in its body.
+/// Position of a grain in its body.
 struct BodyMember {
   Vector3 offset = Vector3::Zero();  ///< m, from the centre of gravity along the principal axes
 };
 
-/// solver.skin at most: a wider list holds hundreds of pairs a grain and serves nothing.
+/// Upper limit of solver.skin: a wider list has hundreds of pairs per grain without any use.
 inline constexpr double largest_skin_ratio = 10;
 
 /// Settings of the solver.
@@ -81,7 +81,7 @@ struct SolverOptions {
   bool energy_balance = false;      ///< compute the energy balance (cost: tools/bench)
 };
 
-/// What decides the next bit beside grains, contacts and cell, by the part of the solver that owns it.
+/// State beside grains, contacts and cell that determines the next bit, by the part of the solver that owns it.
 struct SolverState {
   ListState list;
   LastStep last_step;
@@ -94,7 +94,7 @@ struct SolverState {
   EnergyTerms energy_balance;
 };
 
-/// Interactions other than contacts (bonds), and what they form from (water), stand before its members.
+/// Interactions other than contacts (bonds), and the parameters from which they form (water), come before its members.
 struct Specimen : Interactions {
   Shape shape = round_shape(3);
   Cell cell;
@@ -103,8 +103,8 @@ struct Specimen : Interactions {
   Damping damping;
   SolverOptions solver;
   Grains grains;
-  std::vector<Body> bodies;         ///< empty: every grain moves by itself; else all grains are members
-  std::vector<BodyMember> members;  ///< one for each grain where there are bodies
+  std::vector<Body> bodies;         ///< empty: every grain moves by itself; otherwise all grains are members
+  std::vector<BodyMember> members;  ///< one for each grain if there are bodies
   std::vector<Contact> contacts;
   SolverState state;
 };

@@ -25,7 +25,7 @@ using fields::Path;
 using fields::Rows;
 using fields::Textual;
 
-/// A range with its unit, and that it holds finite numbers only where one is not.
+/// A range with its unit, with a remark if a number is not finite.
 std::string words(const Interval& range, const char* unit, double found) {
   if (range.low == -no_bound && range.high == no_bound) return in_words(range);
   return in_words(range) + (unit == std::string("1") ? "" : std::string(" ") + unit) +
@@ -44,7 +44,7 @@ constexpr const char* flat_words(InPlane plane) {
                                     : "0: in 2D its first component is that along the tangent, the others are none";
 }
 
-/// The numbers of one specimen against the ranges of its fields, and its lists against the number of grains.
+/// Checks the numbers of a specimen against the ranges of its fields, and its lists against the number of grains.
 class Ranges : CheckedSpecimen {
  public:
   explicit Ranges(const CheckedSpecimen& checked) : CheckedSpecimen(checked) {}
@@ -105,8 +105,7 @@ class Ranges : CheckedSpecimen {
            " is out of range; allowed: " + allowed);
   }
 
-  /// What a law reads is in the range that the law states; what none of this specimen reads is 0, or in that of
-  /// another.
+  /// The constants of the law are in its range; constants of other laws are 0 or in the range of their law.
   void law_constant(const Path& path, std::size_t row, double value, const Field<Material, double>& field) const {
     const LawParameter* stated = nullptr;
     for (const LawParameter& each : law_parameters()) {
@@ -126,7 +125,7 @@ class Ranges : CheckedSpecimen {
   }
 };
 
-/// What fields must be beside one another.
+/// Conditions between fields.
 class Relations : CheckedSpecimen {
  public:
   explicit Relations(const CheckedSpecimen& checked) : CheckedSpecimen(checked) {}
@@ -153,7 +152,7 @@ class Relations : CheckedSpecimen {
     if (state.masses.mass.size() != state.masses.inverse_inertia.size())
       advise("state/masses/mass has " + std::to_string(state.masses.mass.size()) +
              " rows, state/masses/inverse_inertia " + std::to_string(state.masses.inverse_inertia.size()) +
-             "; allowed: both one for each grain, or both none, and they are made anew");
+             "; allowed: both one for each grain, or both none, and they are computed again");
     if (const std::size_t rows = state.energy_balance.interactions.size(); rows > 1)
       refuse("state/energy_balance/interactions has " + std::to_string(rows) + " rows; allowed: none, or one");
     const std::size_t n = s.grains.size();
@@ -180,7 +179,7 @@ class Relations : CheckedSpecimen {
              "; allowed: " + std::to_string(dimension_of(s.shape)) + " where shape is " + name(s.shape));
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 3; ++column) {
-        const bool flat = s.cell.dimension == 2 && column == 2;  // the thickness stands alone
+        const bool flat = s.cell.dimension == 2 && column == 2;  // only the thickness is not 0
         const double value = l(row, column), most = flat ? 0 : largest_tilt * l(row, row);
         const bool right = row == column ? value > 0 : row > column ? value == 0 : std::abs(value) <= most;
         if (right) continue;
@@ -192,7 +191,7 @@ class Relations : CheckedSpecimen {
                  " m; give the same lattice by shorter vectors");
         advise(who +
                "; the lattice must be upper triangular with a positive diagonal, in 2D with the thickness alone in "
-               "its last row and column: turn cell and grains into that frame first");
+               "its last row and column: rotate cell and grains into that frame first");
       }
     const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
     if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
@@ -200,7 +199,8 @@ class Relations : CheckedSpecimen {
              in_words(s.cell.rotation.determinant()) + "; allowed: below 1e-8, and +1");
   }
 
-  /// Far from the cell a coordinate holds no place in it, and the number of periods in between no image.
+  /// Far from the cell the precision of a coordinate is insufficient, and the number of periods in between exceeds an
+  /// image.
   void check_places() const {
     constexpr double most_periods = double(1 << 30);
     for (std::size_t k = 0; k < s.grains.size(); ++k) {
@@ -231,8 +231,8 @@ class Relations : CheckedSpecimen {
     }
   }
 
-  /// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer, and no more than
-  /// one of them. A damaged one of many sub-steps would be made by const calls that show grains.
+  /// Strain deferred to the next sub-step: less than a hundredth, the longest sub-step, and at most one sub-step.
+  /// Const calls that return grains apply it; a damaged value would make them do many sub-steps.
   void check_deferred() const {
     const Matrix3& u = s.state.control.deferred.stretch;
     const bool upper = u(1, 0) == 0 && u(2, 0) == 0 && u(2, 1) == 0;
@@ -255,9 +255,9 @@ class Relations : CheckedSpecimen {
     for (std::size_t k = 0; k < s.contacts.size(); ++k) check_history(k, rolling);
   }
 
-  /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong
-  /// to it. In space tangential forces and moments lie in the tangent plane: the next step would turn one along the
-  /// normal into it, whatever its size. A thousandth is what tables of six digits leave, the rest is round-off.
+  /// A spring without stiffness has no force; a force read from a file would act permanently, without an energy. In
+  /// space tangential forces and moments lie in the tangent plane: the next step would rotate a normal component of any
+  /// size into it. A deviation of a thousandth is the error of tables with six digits.
   void check_history(std::size_t k, const std::vector<double>& rolling) const;
 };
 
@@ -280,7 +280,7 @@ void Relations::check_history(std::size_t k, const std::vector<double>& rolling)
   const Vector3 &xi = s.grains.position[std::size_t(c.i)], &xj = s.grains.position[std::size_t(c.j)];
   const Vector3 shift = translation(s.cell, c.image), branch = xj + shift - xi;
   const double length = branch.stableNorm();
-  if (!(length > 0)) return;  // grains at one place: refused where contacts are made
+  if (!(length > 0)) return;  // grains at one position: an error when contacts are made
   const Vector3 normal = moves_as_body(s.shape) ? normal_of_solids(s, c, rolling) : Vector3(branch / length);
   const double reach = s.grains.radius[std::size_t(c.i)] + s.grains.radius[std::size_t(c.j)];
   const double root = with_law(s.contact.law, [&](auto law) {

@@ -1,11 +1,11 @@
 // The fields of a specimen, each described once: snapshots, files and comparisons of specimens go through fields::visit
-// (described.hpp). Those of the state of the solver lie with their owners. Names, units and order are those of the file
+// (described.hpp). Those of the state of the solver are with their owners. Names, units and order are those of the file
 // (rvelab/io/README.md); a member of a struct that has no entry does not compile.
 //
-// Each field states the range of its numbers where it is not every finite one (Field::within); of what a law reads, the
-// law does (contact/parameter.hpp). check_specimen holds them (specimen_check.hpp).
+// Each field states the range of its numbers unless all finite ones are allowed (Field::within); constants of a law
+// have theirs in the law (contact/parameter.hpp). check_specimen checks them (specimen_check.hpp).
 //
-// A field that is added, taken away or renamed makes a new version of the file format (io/hdf5/schema.hpp).
+// Adding, removing or renaming a field makes a new version of the file format (io/hdf5/schema.hpp).
 #pragma once
 
 #include <iterator>
@@ -197,7 +197,7 @@ inline constexpr auto members_of<Interaction<Law, std::integer_sequence<int, n..
 template <class Law>
 inline constexpr bool left_out_where_empty<Interaction<Law>> = true;
 
-/// What interactions of a law form from, as it declares it.
+/// The parameters from which interactions of a law form, as the law declares them.
 template <FormsByItself Law>
 constexpr auto fields_of_settings() {
   using Settings = typename Law::Settings;

@@ -1,5 +1,5 @@
-// Numbers in text as C writes and reads them, 1.5 and not 1,5, whatever locale a host has set (setlocale): in this
-// thread, for as long as an object lives. Of streams, which follow std::locale::global: rvelab/error.hpp.
+// While an object exists, this thread writes and reads numbers in the C locale (1.5, not 1,5), independent of the
+// host's setlocale. Streams follow std::locale::global instead: rvelab/error.hpp.
 #pragma once
 
 #include <locale.h>

@@ -1,4 +1,4 @@
-// Loops over many grains in pieces, shared by a team where it is worth its meetings.
+// Loops over many grains in blocks, shared by a team if the work exceeds the cost of synchronisation.
 #pragma once
 
 #include <cstddef>
@@ -7,14 +7,14 @@
 
 namespace rvelab {
 
-/// Grains from which a team shares the work on one cell: two hand-overs a step cost some 20 us.
+/// Least number of grains of a cell for which a team shares the work: two synchronisations a step cost some 20 us.
 constexpr std::size_t least_shared_grains = 30'000;
 
-/// Pieces of work that is done once a list, not once a step.
+/// Length of a block of work that is done once a list, not once a step.
 constexpr std::size_t piece_length = 4096;
 constexpr std::size_t pieces_in(std::size_t count) { return (count + piece_length - 1) / piece_length; }
 
-/// Calls work(piece, first, last) for all pieces of `count` things; on the team if there is one.
+/// Calls work(block, first, last) for all blocks of `count` items; on the team if there is one.
 template <class Work>
 void in_pieces(std::size_t count, Workers* team, const Work& work) {
   const auto one = [&](std::size_t k) {

@@ -14,19 +14,19 @@ namespace {
 
 constexpr std::size_t no_piece = std::numeric_limits<std::size_t>::max();
 
-/// s, from any fixed moment.
+/// s, from an arbitrary origin.
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// The gate: threads inside, one bit whether more may come, number of the call.
+// The gate: threads inside, one bit whether more may enter, number of the call.
 constexpr std::uint64_t inside = 0xffff, open = 0x10000, next_call = 0x20000;
 
-// s. A step has a score of calls, many of which are shorter than it takes to wake a thread. A thread that came too late
-// may have been given the core of the caller: it does not keep it for long.
+// s. A step has some twenty calls, many of them shorter than the time to wake a thread. A late thread may run on the
+// core of the caller, so it spins only briefly.
 constexpr double until_sleep = 150e-6, until_sleep_late = 20e-6, until_help = 20e-6;
-// s. A loss as large as `loss` ends the sharing for `patience` times as long; gains are put by up to `most`, so that
-// one bad moment does not end it. A loop that is not done in `brief` alone has an account of its own.
+// s. A loss of `loss` ends the sharing for `patience` times as long. Gains up to `most` are stored, so that a single
+// delay does not end it. Loops longer than `brief` have a separate account.
 constexpr double loss = 5e-3, most = 20e-3, patience = 20, brief = 2e-3;
 
 void rest() {
@@ -37,8 +37,8 @@ void rest() {
 #endif
 }
 
-/// Whether it comes true within so many seconds. Never gives way: on a busy machine the core would be gone for a slice
-/// of the others' time, thousands of times what is waited for.
+/// Whether the condition becomes true within so many seconds. It spins without yielding: on a busy machine a yield
+/// costs a time slice of other processes, thousands of times this wait.
 template <class Condition>
 bool soon(double seconds, const Condition& condition) {
   if (condition()) return true;
@@ -69,7 +69,7 @@ Workers::Workers(unsigned threads) : parts_(std::max(1u, threads)), failed_piece
     leave();
     throw NotStarted(std::to_string(threads) + " threads: the system starts no more than " + std::to_string(started) +
                      " here; lower --threads, or raise the limits (ulimit -u, ulimit -v)");
-  } catch (...) {  // no memory: the threads that are there would end the program
+  } catch (...) {  // out of memory: destroying running threads would end the program
     leave();
     throw;
   }
@@ -100,7 +100,7 @@ void Workers::share(std::size_t pieces, std::size_t parts, const WorkOrder* orde
   std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-/// Unless the account says alone. A loop that is begun alone and turns out long is gone on with together.
+/// Shares the loop unless the account forbids it. A long loop that the caller has begun alone is then shared.
 void Workers::together(std::size_t pieces, std::size_t parts) {
   const double begin = wall_seconds();
   double now = begin;
@@ -118,7 +118,7 @@ void Workers::together(std::size_t pieces, std::size_t parts) {
   book(*account, now);
 }
 
-/// One piece; after the failure of one that others may come after, those of higher numbers are left out.
+/// One block. In an ordered loop blocks above a failed one are skipped.
 void Workers::make(std::size_t piece) {
   if (order_ != nullptr && piece > failed_piece_) return;
   try {
@@ -131,7 +131,7 @@ void Workers::make(std::size_t piece) {
   }
 }
 
-/// Pieces from `first` on, with those that come.
+/// Blocks from `first` on, shared with the threads that enter.
 void Workers::meet(std::size_t first, std::size_t pieces, std::size_t parts) {
   own_parts_ = parts > 1;
   for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -147,7 +147,7 @@ void Workers::meet(std::size_t first, std::size_t pieces, std::size_t parts) {
   }
   gate_ += next_call + open;
   if (sleeping_ > 0) {
-    // A thread on its way to sleep holds this until it can be woken.
+    // A thread that is going to sleep holds the mutex until it can be woken.
     { const std::lock_guard lock(mutex_); }
     begin_.notify_all();
   }
@@ -156,8 +156,8 @@ void Workers::meet(std::size_t first, std::size_t pieces, std::size_t parts) {
   await(until_sleep, [this] { return (gate_ & inside) == 0; });
 }
 
-/// Alone it had taken the caller's time at work and that of the others: theirs by their clocks, but no more than the
-/// caller took for as many pieces, for they may have been off their cores meanwhile.
+/// The estimated time without sharing is the working time of the caller and the others. That of the others is limited
+/// by the caller's time for as many blocks, since they may have been suspended meanwhile.
 void Workers::book(Account& account, double begin) const {
   const double end = wall_seconds();
   const Part& caller = parts_[0];
@@ -183,8 +183,8 @@ void Workers::take(std::size_t thread) {
   own.worked = wall_seconds() - begin - own.waited;
 }
 
-/// Whether they begin all of their own. A piece that is taken over moves its points to this core's cache, and the next
-/// loop moves them back: a thread that is behind by less than a wake-up is waited for, if it has come.
+/// Whether the others begin all blocks of their parts. Taking over a block moves its points to this core's cache, and
+/// the next loop moves them back. So this thread waits for an active one that is behind by less than a wake-up.
 bool Workers::others_finish(std::size_t thread, Part& own) {
   const auto all_begun = [this] {
     return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.next >= part.end; });
@@ -196,7 +196,7 @@ bool Workers::others_finish(std::size_t thread, Part& own) {
   return all_begun();
 }
 
-/// What is left of a part.
+/// Makes the remaining blocks of a part.
 void Workers::take_from(Part& from, Part& own) {
   for (std::size_t piece; (piece = from.next.fetch_add(1)) < from.end;) {
     if (order_ != nullptr) await_before(piece, own);
@@ -204,7 +204,7 @@ void Workers::take_from(Part& from, Part& own) {
     ++own.made;
     if (order_ == nullptr) continue;
     std::atomic_ref(done_[piece]).store(1);
-    tell();
+    notify_waiting();
   }
 }
 
@@ -219,7 +219,7 @@ void Workers::await_before(std::size_t piece, Part& own) {
   }
 }
 
-/// Waits, after a while asleep, until tell() finds it true: a sleeper leaves its core to whom it waits for.
+/// Spins, then sleeps until notify_waiting(): sleeping leaves the core to the threads that it waits for.
 template <class Condition>
 void Workers::await(double spinning, const Condition& condition) {
   if (soon(spinning, condition)) return;
@@ -229,13 +229,13 @@ void Workers::await(double spinning, const Condition& condition) {
   --waiting_;
 }
 
-void Workers::tell() {
+void Workers::notify_waiting() {
   if (waiting_ == 0) return;
   { const std::lock_guard lock(mutex_); }
   end_.notify_all();
 }
 
-/// Into a call that this thread has not been in, if one is open.
+/// Enters an open call in which this thread has not taken part.
 bool Workers::enter(std::uint64_t& seen) {
   std::uint64_t gate = gate_;
   while ((gate & open) != 0 && gate / next_call != seen) {
@@ -268,7 +268,7 @@ void Workers::serve(std::size_t thread) {
     if (!entered) return;
     take(thread);
     --gate_;
-    tell();
+    notify_waiting();
     patient = until_sleep;
   }
 }

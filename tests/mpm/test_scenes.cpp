@@ -31,7 +31,7 @@ TEST_CASE("every scene is read, with each of its cases") {
       ++cases;
       CHECK_NOTHROW(read_scene(path, {name}, {}));
       // Each says at its head where its numbers are from.
-      CHECK(bytes_of(path).find("# Where the numbers are from.") != std::string::npos);
+      CHECK(bytes_of(path).find("# Sources.") != std::string::npos);
     }
   }
   CHECK(files >= 7);

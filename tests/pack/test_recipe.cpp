@@ -292,7 +292,7 @@ TEST_CASE("every shipped recipe is one, and says in its head what it is and wher
     std::ifstream input(path);
     const std::string text{std::istreambuf_iterator<char>(input), {}};
     CHECK(text.starts_with("# "));
-    CHECK_THAT(text, Contains("# Where the numbers are from.") && Contains("rvelab pack " + name));
+    CHECK_THAT(text, Contains("# Sources.") && Contains("rvelab pack " + name));
   }
   CHECK(recipes >= 10);
 }

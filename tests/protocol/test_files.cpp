@@ -59,7 +59,7 @@ TEST_CASE("Every protocol opens with what it is and where its numbers are from")
     std::ifstream text(file);
     std::string line, opening;
     while (std::getline(text, line) && line.starts_with("#")) opening += line + "\n";
-    CHECK(opening.find("# Where the numbers are from.") != std::string::npos);
+    CHECK(opening.find("# Sources.") != std::string::npos);
     CHECK(opening.find("rvelab run ") != std::string::npos);
     CHECK_FALSE(protocol::read_protocol(file).name.empty());
   }

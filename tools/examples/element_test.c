@@ -2,8 +2,8 @@
  *
  *     element_test SPECIMEN.h5 [STRAIN]
  *
- * Prints axial strain, volumetric strain and the stress ratio sigma_yy/sigma_xx. Any status below RVELAB_OK is told
- * with its text; RVELAB_DISCARD would be answered with a smaller step. */
+ * Prints axial strain, volumetric strain and the stress ratio sigma_yy/sigma_xx. Any status below RVELAB_OK is printed
+ * with its text; a host would repeat a step with RVELAB_DISCARD by a smaller one. */
 #include <rvelab/rvelab.h>
 #include <stdio.h>
 #include <stdlib.h>

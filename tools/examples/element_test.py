@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Simple shear of one RVE at constant volume, increment by increment, as a continuum code would ask for it.
+"""Simple shear of one RVE at constant volume, increment by increment, as in a continuum code.
 
     element_test.py SPECIMEN.h5 [GAMMA]
 

@@ -80,7 +80,7 @@ def commands_page(folder: Path) -> str:
     names = re.findall(r"^  ([a-z][a-z-]*) ", listed, re.M)
     if not names:
         raise PageError("the help of rvelab lists no subcommand")
-    out = ["# All commands", "", "What each program says when it is asked by `--help`.", "", "## rvelab", "", "````text", overall,
+    out = ["# All commands", "", "The output of `--help` of each program.", "", "## rvelab", "", "````text", overall,
            "````", ""]
     for name in names:
         out += [f"### rvelab {name}", "", "````text", _help(rvelab, name), "````", ""]

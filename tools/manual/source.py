@@ -172,7 +172,7 @@ class Source:
         tree = sorted(site_name(path) for path in tracked())
         (self.folder / "tree").mkdir(exist_ok=True)
         (self.folder / "tree" / "index.md").write_text(
-            "# The README files of the tree\n\nWhat a developer needs stands beside the code; these are the same files.\n\n"
+            "# The README files of the tree\n\nDocumentation for developers is beside the code; these are the same files.\n\n"
             "```{toctree}\n:titlesonly:\n\n" + "\n".join(name.removeprefix("tree/") for name in tree) + "\n```\n")
         text += "\n```{toctree}\n:hidden:\n:caption: In the tree\n\ntree/index\n```\n"
         index.write_text(text, encoding="utf-8")

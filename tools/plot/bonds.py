@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Bonds and where they broke: bonds.py S.h5|R.h5|FOLDER... -o bonds.png (of record files the last state).
+"""Bonds and cracks: bonds.py S.h5|R.h5|FOLDER... -o bonds.png (of record files the last state).
 
-An intact bond is a line between the centres of its grains. One that broke is a crack across that line, as long as the bond was wide: red
-where it broke in tension, blue in shear; grains that have since gone further apart than twice the length of their bond show none. The cell
-is dashed. In 3D one sees a slab, a mean diameter to both sides of the middle of the cell along y, projected onto the plane of x
+An intact bond is a line between the centres of its grains. A broken bond is a crack across that line, of the width of the bond: red in
+tension, blue in shear; it is not drawn if its grains are farther apart than twice the length of the bond. The cell
+is dashed. In 3D a slab is shown, a mean diameter on both sides of the middle of the cell along y, projected onto the plane of x
 and z.
 """
 
@@ -11,7 +11,7 @@ import argparse
 import math
 import pathlib
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import chains
 import state as states
 import matplotlib.pyplot as plt
@@ -23,7 +23,7 @@ TENSION, SHEAR, INTACT = "crimson", "tab:blue", "0.25"
 
 
 def lines_of(state):
-    """Segments (k, 2, 2) m in the plane that is seen: intact bonds, cracks in tension, cracks in shear."""
+    """Segments (k, 2, 2) m in the plane of the figure: intact bonds, cracks in tension, cracks in shear."""
     plane = [0, state.dimension - 1]
     bonds = state.bonds
     seen = chains.in_slab(state, bonds.begin + 0.5 * bonds.branch)
@@ -51,11 +51,11 @@ def counts(state):
     return [int((state.bonds.broken == mode).sum()) for mode in (0, 1, 2)]
 
 
-def add_key(axes, **place):
+def add_key(axes, **position):
     handles = [Line2D([], [], color=INTACT, linewidth=1.2, label="intact bond"),
                Line2D([], [], color=TENSION, linewidth=1.8, label="broken in tension"),
                Line2D([], [], color=SHEAR, linewidth=1.8, label="broken in shear")]
-    axes.legend(handles=handles, fontsize=8, **place)
+    axes.legend(handles=handles, fontsize=8, **position)
 
 
 def expect_bonds(found):

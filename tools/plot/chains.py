@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Force chains with the outline of the cell: chains.py S.h5|R.h5|FOLDER... -o chains.png (of record files the last state).
 
-Several states stand side by side, each with its own mean force and key. Each contact is a line along its branch, as wide as its
-normal force; contacts that carry more than the mean are red, the others blue. Ellipses are drawn as they lie. The cell is dashed,
-grains of one cell are drawn once. In 3D one sees a slab, a mean diameter to both sides of the middle of the cell along y,
+Several states are drawn side by side, each with its own mean force and key. Each contact is a line along its branch, as wide as its
+normal force; forces above the mean are red, the others blue. Ellipses have their orientation. The cell is dashed,
+and each grain is drawn once. In 3D a slab is shown, a mean diameter on both sides of the middle of the cell along y,
 projected onto the plane of x and z.
 """
 
@@ -11,7 +11,7 @@ import argparse
 import math
 import pathlib
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import state as states
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ def unit_of(state):
 
 
 def in_slab(state, points):
-    """Rows of points that are seen: in 2D all, in 3D those near the middle of the cell along y."""
+    """Rows of visible points: in 2D all, in 3D those near the middle of the cell along y."""
     if state.dimension == 2:
         return np.ones(len(points), bool)
     return np.abs(points[:, 1]) < state.mean_diameter
@@ -45,7 +45,7 @@ def patches_of(state, scale, rows):
 
 
 def outline_of(state):
-    """Corners of the cell in the plane that is seen, m."""
+    """Corners of the cell in the plane of the figure, m."""
     plane = [0, state.dimension - 1]
     a, b = state.cell[plane, 0], state.cell[plane, state.dimension - 1]
     return np.array([-(a + b) / 2, (a - b) / 2, (a + b) / 2, (b - a) / 2])

@@ -1,15 +1,15 @@
-"""Which records are one curve: tests of one kind averaged over their specimens; colours, labels, legends, axes.
+"""Curves of records: tests of one kind averaged over their specimens; colours, labels, legends, axes.
 
 Tests are of one kind if group (folder), protocol, material, number of grains, pressure (within 3 %), void ratio at the
-start (no gap above 0.02) and name of the stage are the same: they differ by the specimen alone. A curve is their mean on
-a common grid of strains, its band the standard deviation over the specimens. Where pressures differ the colour goes with
-the pressure, dark to light, and the line style with the group; else the colour goes with what differs.
+start (no gap above 0.02) and name of the stage are the same: they differ only by their specimen. A curve is their mean on
+a common grid of strains, its band the standard deviation over the specimens. If pressures differ the colour shows the
+pressure, dark to light, and the line style the group; otherwise the colour shows the difference.
 """
 
 import dataclasses
 from dataclasses import dataclass
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import ticker
@@ -22,7 +22,7 @@ GRID = 400  # points of a mean curve
 
 @dataclass
 class Curve:
-    """Tests that differ by their specimen alone."""
+    """Tests that differ only by their specimen."""
 
     stages: list
     colour: object
@@ -50,7 +50,7 @@ class Curve:
         return sign * grid, np.mean(rows, axis=0), np.std(rows, axis=0, ddof=1)
 
     def draw(self, axes, value, of=lambda stage: stage.strain, label=True, each=False, scale=(1, 1)):
-        """Mean and band of value against of, both times scale; each test for itself where strains turn or if asked."""
+        """Mean and band of value against of, both times scale; each test separately if strains reverse or on request."""
         label = self.label if label else None
         line = {"color": self.colour, "linestyle": self.dashes}
         if self.turns or each:
@@ -107,12 +107,12 @@ def first_void_ratio(stage):
 
 
 def kinds_of(stages):
-    """For each stage the five things that tell kinds of tests apart, and the words for them."""
+    """For each stage the five properties that distinguish kinds of tests, and their labels."""
     pressures = np.array([stage.pressure for stage in stages])
     logs = np.log(np.maximum(np.abs(pressures), 1e-300))
     of_pressure, means = classes(logs, PRESSURE_GAP)
     of_void, voids = classes([first_void_ratio(stage) for stage in stages], VOID_RATIO_GAP)
-    # The void ratio falls with the pressure of a test: it tells specimens apart at one pressure only.
+    # The void ratio falls with the pressure of a test: it distinguishes specimens only at equal pressure.
     for k in range(len(means)):
         here = np.flatnonzero(of_pressure == k)
         own, _ = classes([first_void_ratio(stages[row]) for row in here], VOID_RATIO_GAP)
@@ -149,7 +149,7 @@ def rest_of(kind):
 
 
 def labels_of(kinds, stages, keys, varies, pressures):
-    """For each kind what tells its curve from the others, and of how many specimens it is."""
+    """For each kind the label of its curve, and its number of specimens."""
     labels, files = [], []
     for kind in kinds:
         members = [stage for stage, key in zip(stages, keys) if key == kind]
@@ -163,7 +163,7 @@ def labels_of(kinds, stages, keys, varies, pressures):
             words.append(f"$e_0$ = {np.mean([first_void_ratio(stage) for stage in members]):.3f}")
         labels.append(", ".join(words))
         files.append(list(dict.fromkeys(stage.path for stage in members)))
-    # Tests of other settings or materials that nothing else tells apart go by the name of their first file.
+    # Tests of different settings or materials with equal labels have the name of their first file as label.
     told = [f"{own[0].stem}, {label}" if labels.count(label) > 1 else label for label, own in zip(labels, files)]
     return [label + (f" (n = {len(own)})" if len(own) > 1 else "") for label, own in zip(told, files)]
 
@@ -183,14 +183,14 @@ def band_in_words(curves):
 
 
 def log_axis(axis, values):
-    """A logarithmic axis that stands zeros and negative values (they are not drawn), and shows numbers within a decade."""
+    """A logarithmic axis that accepts zeros and negative values (they are not drawn), and shows numbers within a decade."""
     values = np.asarray(values, float)
     values = values[np.isfinite(values) & (values > 0)]
     if len(values) == 0:
         raise ValueError("no value above 0 for a logarithmic axis; give records with a pressure above 0")
     low, high = float(values.min()), float(values.max())
     if high < 1.05 * low:
-        return  # a point needs no logarithm
+        return  # a single point needs no logarithm
     axis._set_axes_scale("log", nonpositive="mask")
     # Half of a tenth of the span beside the values.
     room = (high / low) ** 0.05
@@ -207,8 +207,8 @@ def ticks_of_decade(low, high):
     for finest in ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 5.0, 7.0), tuple(np.arange(1.0, 10.0)),
                    tuple(np.arange(1.0, 10.0, 0.5)), tuple(np.arange(1.0, 10.0, 0.2)), tuple(np.arange(1.0, 10.0, 0.1))):
         powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
-        places = np.outer(powers, finest)
-        if np.sum((places >= low) & (places <= high)) >= 4:
+        ticks = np.outer(powers, finest)
+        if np.sum((ticks >= low) & (ticks <= high)) >= 4:
             break
     return finest
 
@@ -230,7 +230,7 @@ def length_unit(size):
 
 
 def add_options(parser, output):
-    """The options that the figures of curves share."""
+    """Common options of the figures of curves."""
     parser.add_argument("records", nargs="+", help="record files, or folders of them")
     parser.add_argument("-o", "--output", default=output, help="figure to write (PNG, PDF or SVG)")
     parser.add_argument("--colour", choices=["auto", "pressure", "group"], default="auto",

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 """Void ratio against the logarithm of pressure: e_log_p.py RECORDS.h5... -o e_log_p.png (folders: their *.h5).
 
-Isotropic compression (and paths of one's own) and oedometers; the stages of a test are one path. The path is cut where p
-turns, and each part is fitted by e = e_1 - C log10 p: first loading by the compression index C_c beyond the bend that
-fits best (before it the specimen remembers its preparation), unloading by the swelling index C_s, reloading up to the
+Isotropic compression (and other paths) and oedometers; the stages of a test are one path. The path is divided at the
+reversals of p, and each part is fitted by e = e_1 - C log10 p: first loading by the compression index C_c beyond the best-fitting
+bend (before it the preparation has an effect), unloading by the swelling index C_s, reloading up to the
 largest pressure so far by the recompression index C_r. Standard errors are those of the regression; of several specimens
-the index is the mean of theirs and its error that of the mean. C = lambda ln 10. Records off the held stress are crossed.
+the index is the mean of theirs and its error that of the mean. C = lambda ln 10. Crosses mark records outside the held stress.
 """
 
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,7 +23,7 @@ NAMES = {"C_c": "compression index", "C_s": "swelling index", "C_r": "recompress
 
 
 def compressions(stages):
-    """The stages that compress or swell; ValueError if there are none."""
+    """The stages of compression or swelling; ValueError if there are none."""
     chosen = [stage for stage in stages if stage.kind in ("pressure_path", "path") or
               stage.kind == "compression" and stage.keys.get("lateral") == "zero_strain"]
     if not chosen:
@@ -42,7 +42,7 @@ def line_through(x, y):
 
 
 def turns_of(p):
-    """Rows at which p turns, by more than REVERSAL: smaller ones are the tolerance of a held stress."""
+    """Rows of reversals of p by more than REVERSAL; smaller ones are within the tolerance of a held stress."""
     turns, extreme, direction = [], 0, 0
     for k in range(1, len(p)):
         change = p[k] / p[extreme] - 1
@@ -57,7 +57,7 @@ def turns_of(p):
 
 
 def parts_of(p):
-    """Pieces of a path, rows of one direction: (index, first row, behind the last one). Reloading ends at the largest p."""
+    """Parts of a path, rows of one direction: (index, first row, behind the last one). Reloading ends at the largest p."""
     parts, begin, largest = [], 0, 0.0
     for end in turns_of(p) + [len(p) - 1]:
         rows = p[begin:end + 1]
@@ -82,7 +82,7 @@ def bend_of(x, y):
         first, second = line_through(x[:k + 1], y[:k + 1]), line_through(x[k:], y[k:])
         if first[3] + second[3] < best and second[0] < first[0] < 0:
             best, at = first[3] + second[3], k
-    # Two more numbers must earn their place: half of the squares left.
+    # Two more parameters must halve the sum of squares.
     return at if best < 0.5 * whole else 0
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Response envelopes: envelope.py RECORDS.h5 -o envelope.png (every stage of kind envelope).
 
-Left, the strains of the probes, right, the changes of stress they made (or that made them), axial against lateral,
-compression positive; in 3D lateral is the root of two times the mean of the two (Rendulic plane). Colours and numbers go
-with the direction of the strain of the probe.
+Left, the strains of the probes, right, their changes of stress (given or resulting), axial against lateral,
+compression positive; in 3D lateral is the root of two times the mean of the two (Rendulic plane). Colours and numbers show
+the direction of the strain of the probe.
 """
 
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import matplotlib.pyplot as plt
 import numpy as np
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Fabric against strain: fabric.py RECORDS.h5... -o fabric.png (folders stand for their *.h5).
+"""Fabric against strain: fabric.py RECORDS.h5... -o fabric.png (a folder means its *.h5).
 
-Above, the anisotropy Fa of the contact normals against the driving strain of each stage with records (stages that go on
+Above, the anisotropy Fa of the contact normals against the driving strain of each stage with records (continued stages
 are joined); below, the coordination number and the fraction of sliding contacts, where the files have them. Mean and band
 over specimens as in stress_strain.py.
 """
 
 import argparse
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 

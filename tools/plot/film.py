@@ -2,10 +2,10 @@
 """A film of grains and force chains, or of fields: film.py R.h5|RUN -o film.mp4 (or film.gif).
 
 Of a record file, its snapshots (run the test with --set output.snapshots_every=10) and its end: grains and force chains
-(--field chains), grains coloured by their mean stress (--field p), or bonds and where they broke (--field bonds, drawn as by
+(--field chains), grains coloured by their mean stress (--field p), or bonds and cracks (--field bonds, drawn as by
 bonds.py), and below q/p against the strain of the stage with the state of the frame marked. Of a folder that rvelab-mpm
 wrote, any field of its material points (--field eps_q, ...).
-MP4 (H.264) is made by ffmpeg, GIF by Pillow; without -o MP4 where ffmpeg is there.
+MP4 (H.264) is made by ffmpeg, GIF by Pillow; without -o MP4 if ffmpeg is installed.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import pathlib
 import shutil
 import subprocess
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import bonds
 import chains
 import state as states
@@ -25,7 +25,7 @@ FIELDS = ("chains", "p", "bonds")  # of grains
 
 
 def picture_of(figure):
-    """Pixels (height, width, 3) of a figure; both even, as H.264 wants them."""
+    """Pixels (height, width, 3) of a figure; both even, as H.264 requires."""
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3]
     plt.close(figure)
@@ -76,12 +76,12 @@ def save_mp4(pictures, output, fps):
         told = encoder.stderr.read().decode(errors="replace").strip()
     if encoder.returncode != 0:
         raise ValueError(f"{output}: ffmpeg could not write it ({told.splitlines()[-1] if told else 'no message'}); give "
-                         "another place, or *.gif")
+                         "another folder, or *.gif")
     return count
 
 
 def box_of(found):
-    """Limits of both axes, m, that hold the cell and the grains of every state."""
+    """Limits of both axes, m, that contain the cell and the grains of every state."""
     corners = np.concatenate([chains.outline_of(state) for state in found])
     room = max(state.mean_diameter for state in found)
     return np.stack([corners.min(axis=0) - room, corners.max(axis=0) + room])

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What `rvelab fit` found: fit.py FOLDER -o fit.png (the folder that it wrote; fit.json, or of a sweep sweep.csv).
+"""Results of `rvelab fit`: fit.py FOLDER -o fit.png (the folder that it wrote; fit.json, or of a sweep sweep.csv).
 
-Of a fit: the posterior of each parameter with its mean and 95 % interval over the range that was searched, the tests that
-were spent as strokes below it; then each target as measured and as fitted, in standard deviations of both; of measured
+Of a fit: the posterior of each parameter with its mean and 95 % interval over the searched range, the tests
+as strokes below it; then each target as measured and as fitted, in standard deviations of both; of measured
 curves the points with their errors and the fit with its band of 95 %. Of a sweep: each measure against the first varied
 key, mean and standard error over the specimens, one curve for each combination of the others.
 """
@@ -13,12 +13,12 @@ import json
 import math
 import pathlib
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
-# Labels of what a curve measures and of what it goes with, and the factor to their units.
+# Labels of ordinates and abscissae of curves, and the factors to their units.
 QUANTITIES = {"p": ("mean stress $p$ (kPa)", 1e-3), "strain": ("axial strain (%)", 100), "q_over_p": ("$q/p$", 1), "deviator": ("$\\sigma_1 - \\sigma_3$ (kPa)", 1e-3),
               "volumetric_strain": ("volumetric strain $\\varepsilon_v$ (%)", 100), "void_ratio": ("void ratio $e$", 1)}
 ABSCISSAE = {"strain": ("strain (%)", 100), "p": ("mean stress $p$ (kPa)", 1e-3),
@@ -67,12 +67,12 @@ def draw_posterior(axes, parameter, sample, tests):
 
 
 def in_words(parameter):
-    """Mean and interval of a parameter, in the digits that the interval leaves."""
+    """Mean and interval of a parameter, with the digits that the interval allows."""
     mean, low, high = (parameter[name] for name in ("mean", "low_95", "high_95"))
     if not high > low:
         return records.plain(mean)
-    places = 1 - math.floor(math.log10(high - low))
-    shown = [records.plain(round(value, places)) if places <= 0 else f"{value:.{places}f}" for value in (mean, low, high)]
+    decimals = 1 - math.floor(math.log10(high - low))
+    shown = [records.plain(round(value, decimals)) if decimals <= 0 else f"{value:.{decimals}f}" for value in (mean, low, high)]
     return f"{shown[0]} ({shown[1]} to {shown[2]})"
 
 
@@ -97,7 +97,7 @@ def draw_targets(axes, targets):
 
 
 def draw_curve(axes, rows):
-    """Points of one measured curve, and the band of the fit, or of the tests made with the parameters found."""
+    """Points of one measured curve, and the band of the fit, or of the tests made with the fitted parameters."""
     rows = sorted(rows, key=lambda row: float(row["x"]))
     (label, scale), (below, across) = QUANTITIES[rows[0]["quantity"]], ABSCISSAE[rows[0]["abscissa"]]
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Cyclic loops: loops.py RECORDS.h5 -o loops.png (the last cyclic stage with records).
 
-Left, the driving stress against the driving strain: shear stress for simple shear, axial less lateral stress for
+Left, the driving stress against the driving strain: shear stress for simple shear, axial minus lateral stress for
 compression; right, against p: the stress path to liquefaction. Below, p over its start against the number of cycles.
-Colours go with the cycle.
+Colours show the cycle.
 """
 
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import colors
@@ -24,12 +24,12 @@ def driving_stress(stage):
     axis = "xyz".index(stage.axis) if stage.axis else stage.dimension - 1
     lateral = [k for k in range(stage.dimension) if k != axis]
     stress = stage.stress[:, axis, axis] - sum(stage.stress[:, k, k] for k in lateral) / len(lateral)
-    return stress, "axial less lateral stress $\\sigma_a - \\sigma_r$ (kPa)"
+    return stress, "axial minus lateral stress $\\sigma_a - \\sigma_r$ (kPa)"
 
 
 def cycles_of(strain):
-    """Number of cycles at each record: a quarter to the first turn, half a cycle from each turn to the next, in between
-    by the strain travelled. Behind the last turn a half cycle is as long as the one before it."""
+    """Number of cycles at each record: a quarter to the first reversal, half a cycle from each reversal to the next, in between
+    by the strain path. After the last reversal a half cycle is as long as the one before it."""
     direction = np.sign(np.diff(strain))
     turns = np.flatnonzero(direction[1:] * direction[:-1] < 0) + 1
     ends = [0, *turns, len(strain) - 1]
@@ -45,7 +45,7 @@ def cycles_of(strain):
 
 
 def add_line(axes, x, y, cycles, scale):
-    """A line whose colour goes with the cycle."""
+    """A line whose colour shows the cycle."""
     points = np.stack([x, y], axis=1)
     line = LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=scale.cmap, norm=scale.norm, linewidths=1.0,
                           capstyle="round")
@@ -55,7 +55,7 @@ def add_line(axes, x, y, cycles, scale):
 
 
 def scale_of(cycles):
-    """One colour a cycle, up to 20 of them; beyond, a continuous scale."""
+    """One colour per cycle, up to 20 of them; beyond, a continuous scale."""
     count = max(1, math.ceil(cycles[-1] - 1e-9))
     cmap = plt.get_cmap("viridis")
     if count <= 20:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Mohr circles at peak and their envelope: mohr.py RECORDS.h5... -o mohr.png (folders stand for their *.h5).
+"""Mohr circles at peak and their envelope: mohr.py RECORDS.h5... -o mohr.png (a folder means its *.h5).
 
 Of each file the last drained compression or extension. Its peak is the record with the largest deviator sigma_1 - sigma_3,
 unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none: the others are drawn, with a
@@ -15,7 +15,7 @@ their angles from 12 to 15 % is drawn too, secants through the origin. Compressi
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np

@@ -7,7 +7,7 @@
     mpm.py RUN --segregation -o segregation.png        # rocks ahead of the soil and above it, by classes of size
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
-RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes. Of saturated
+RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed positions, in their deformed shapes. Of saturated
 soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio, seepage. Rocks are drawn in grey, as the
 ellipsoids that their axes span, terrain as a line through its heights, in space the lowest along y."""
 
@@ -16,7 +16,7 @@ import functools
 import pathlib
 import tomllib
 
-from records import STYLE, plt  # first: it says which package is missing
+from records import STYLE, plt  # first: it names a missing package
 import chains
 import h5py
 import numpy as np
@@ -92,10 +92,10 @@ def read(frame, field):
     d = 2 if axes == [0, 1] else 3
     at_start = volume / np.linalg.det(F[:, :d, :d])
     whole = at_start > 0.999 * at_start.max()
-    places = [np.unique(np.round(first[whole, a], 9)) for a in axes]
+    positions = [np.unique(np.round(first[whole, a], 9)) for a in axes]
     lattice = np.mean(whole) > 0.1
     sides = [np.min(np.diff(x)) if lattice and len(x) > 1 else at_start.max() ** (1 / d)
-             for x in places]
+             for x in positions]
     corner = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * sides
     stretch = F[:, axes][:, :, axes]
     scale = np.minimum(1, 3 / np.maximum(np.linalg.norm(stretch, axis=(1, 2)) / 2**0.5, 1e-9))
@@ -278,7 +278,7 @@ def main():
     what.add_argument("--field", choices=sorted(FIELDS))
     what.add_argument("--energy", action="store_true")
     what.add_argument("--force", help="a column of history.csv: plate.force_y, or with its unit kinetic_J")
-    what.add_argument("--segregation", action="store_true", help="mean places of rocks less that of the soil")
+    what.add_argument("--segregation", action="store_true", help="mean positions of rocks minus that of the soil")
     what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
     parser.add_argument("--against", default="time", help="the same for the other axis: plate.displacement_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")

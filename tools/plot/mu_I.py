@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rheology of dense flow: mu_I.py RECORDS.h5... -o mu_I.png (folders stand for their *.h5).
+"""Rheology of dense flow: mu_I.py RECORDS.h5... -o mu_I.png (a folder means its *.h5).
 
 One point a steady simple shear (protocol mu_I, or any simple shear at a given rate): friction mu = |sigma_ab| / sigma_bb
 and void ratio against the inertial number, means over the last three fifths of the strain with standard errors from ten
@@ -9,7 +9,7 @@ blocks. The line is that of da Cruz et al. 2005 for discs of friction 0.4.
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,5 +1,5 @@
 """Record files of rvelab as arrays: stages with their measures in soil mechanics' signs, the style of the figures, and
-the command line of their scripts. curves.py says which stages are one curve.
+the command line of their scripts. curves.py groups stages to curves.
 
 Files hold Cauchy stress in Pa, tension positive, laboratory frame; everything returned here whose name is a soil
 measure (sigma_1, sigma_3, p, q, eps_v, eps_a) is compression positive.
@@ -49,13 +49,13 @@ STYLE = {
 
 @dataclass(frozen=True)
 class Origin:
-    """What a record file says of the test as a whole."""
+    """Data of a record file about the whole test."""
 
     group: str  # folder of the file, or the folder that was given
     specimen: int  # checksum of the specimen that the test began with
     grains: int
     material: tuple  # contact law and parameters of the materials
-    sticks: bool  # whether its grains stick: bonds, water, contacts that pull
+    sticks: bool  # whether its grains adhere: bonds, water, adhesive contacts
     settings: str  # the protocol without its pressures
     wall_seconds: float
     grain_steps: int
@@ -93,7 +93,7 @@ class Stage:
 
     @property
     def drained(self):
-        """The lateral stress of a compression is held."""
+        """The lateral stress of a compression is constant."""
         return self.kind == "compression" and self.keys.get("lateral", "constant_stress") == "constant_stress"
 
     @property
@@ -103,13 +103,13 @@ class Stage:
 
     @property
     def cyclic(self):
-        """The driving strain turns."""
+        """The driving strain reverses."""
         step = np.sign(np.diff(self.strain))
         return bool(np.any(step[1:] * step[:-1] < 0))
 
     @property
     def pressure(self):
-        """Pa: the lateral pressure that is held, else p at the start."""
+        """Pa: the held lateral pressure, otherwise p at the start."""
         return self.keys["lateral_pressure_Pa"] if self.drained else self.invariants()[0][0]
 
     @property
@@ -135,7 +135,7 @@ class Stage:
         return np.divide(q, p, out=np.full_like(q, math.nan), where=p > 1e-6 * abs(p[0]))
 
     def test_in_words(self):
-        """What a laboratory calls the stage."""
+        """The laboratory name of the stage."""
         place = "Biaxial" if self.dimension == 2 else "Triaxial"
         if self.kind == "compression":
             if self.keys.get("lateral") == "zero_strain":
@@ -248,7 +248,7 @@ def files_of(paths):
 
 
 def is_record_file(path):
-    """False for specimens that lie in a folder of records; whatever else is wrong is told when it is read."""
+    """False for specimens in a folder of records; other errors are reported when the file is read."""
     try:
         with h5py.File(path, "r") as file:
             return "records" in file or "materials" not in file
@@ -296,11 +296,11 @@ def plain(value, digits=3):
 
 
 def with_error(value, error, between=" +- "):
-    """A value and its error, this in two digits and the value to the same place; without an error three digits."""
+    """A value and its error, with two digits of the error and the value with the same decimals; without an error three digits."""
     if not (math.isfinite(error) and error > 0):
         return plain(value)
-    places = min(max(1 - math.floor(math.log10(error)), 0), 12)
-    return f"{value:.{places}f}{between}{error:.{places}f}"
+    decimals = min(max(1 - math.floor(math.log10(error)), 0), 12)
+    return f"{value:.{decimals}f}{between}{error:.{decimals}f}"
 
 
 def counted(number, noun):

@@ -12,7 +12,7 @@ import argparse
 import math
 import pathlib
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import state as states
 import matplotlib.pyplot as plt
 import numpy as np

@@ -2,7 +2,7 @@
 
 import pathlib
 
-from records import plt  # first: it says which package is missing
+from records import plt  # first: it names a missing package
 import curves as kinds
 import h5py
 import numpy as np
@@ -21,7 +21,7 @@ def classes_of(radius):
 
 
 def means_of(frames):
-    """Times (s), and for each class the mean place (m) less that of the soil, by mass."""
+    """Times (s), and for each class the mean position (m) minus that of the soil, by mass."""
     times, means = [], {}
     for frame in frames:
         path = frame.with_name(frame.name.replace("points_", "rocks_"))

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from dataclasses import dataclass
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import h5py
 import numpy as np
 
@@ -57,8 +57,8 @@ def program():
     """RVELAB_PROGRAM, else rvelab of this tree or installation, or that of the PATH."""
     named = os.environ.get("RVELAB_PROGRAM")
     root = pathlib.Path(__file__).resolve().parents
-    places = [named] if named else [root[2] / "build/release/bin/rvelab", root[3] / "bin/rvelab"]
-    found = next((str(place) for place in places if pathlib.Path(place).exists()), None) or shutil.which("rvelab")
+    paths = [named] if named else [root[2] / "build/release/bin/rvelab", root[3] / "bin/rvelab"]
+    found = next((str(path) for path in paths if pathlib.Path(path).exists()), None) or shutil.which("rvelab")
     if found is None:
         raise ValueError("no program rvelab is built here or in the PATH; run tools/setup and build it")
     return found
@@ -95,11 +95,11 @@ def every_state(path):
         export(path, "xdmf", xdmf)
         with h5py.File(xdmf + ".h5", "r") as exported:
             count = len(exported)
-            places = places_of(path, count)
-            return [state_of(path, exported[f"state_{k}"], *places[k]) for k in range(count)]
+            numbers = records_of(path, count)
+            return [state_of(path, exported[f"state_{k}"], *numbers[k]) for k in range(count)]
 
 
-def places_of(path, count):
+def records_of(path, count):
     """Number and driving strain of the record of each exported state: the snapshots, then the end."""
     try:
         with h5py.File(path, "r") as file:

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Shear modulus and damping against strain: stiffness.py RECORDS.h5... -o stiffness.png (folders stand for their *.h5).
+"""Shear modulus and damping against strain: stiffness.py RECORDS.h5... -o stiffness.png (a folder means its *.h5).
 
-One point a loop of each cyclic stage: secant shear modulus G over G_max, and damping ratio, against the amplitude of the
-shear strain, as `rvelab measure` has them (rvelab/ensemble/loops.hpp). G_max: the mean shear stiffness of the first probe
-stage that a file holds, else the secant from the first record of a stage to its second, the median over the stages, or the
-stiffest loop where it is stiffer. Above 1 are loops of a specimen whose p has grown since the probe.
+One point for each loop of a cyclic stage: secant shear modulus G over G_max, and damping ratio, against the amplitude of the
+shear strain, as in `rvelab measure` (rvelab/ensemble/loops.hpp). G_max: the mean shear stiffness of the first probe
+stage of a file; without one the secant from the first record of a stage to its second, the median over the stages, or the
+stiffest loop if that is stiffer. Values above 1 belong to specimens whose p has grown since the probe.
 """
 
 import argparse
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import h5py
 import matplotlib.pyplot as plt
@@ -17,7 +17,7 @@ import numpy as np
 
 
 def shear_of(stage):
-    """gamma and tau, Pa: of the plane of a simple shear, else axial less lateral strain and half of that stress."""
+    """gamma and tau, Pa: of the plane of a simple shear, else axial minus lateral strain and half of that stress."""
     if len(stage.axis) == 2:
         a, b = ("xyz".index(letter) for letter in stage.axis)
         return stage.deformation[:, a, b], -0.5 * (stage.stress[:, a, b] + stage.stress[:, b, a])
@@ -28,7 +28,7 @@ def shear_of(stage):
 
 
 def loops_of(stage):
-    """Rows gamma, G, damping ratio: of each loop from a turn of the driving strain to the next but one."""
+    """Rows gamma, G, damping ratio: of each loop from one reversal of the driving strain to the next but one."""
     gamma, tau = shear_of(stage)
     step = np.diff(stage.strain)
     moving = np.flatnonzero(step)  # records may stand at a turn

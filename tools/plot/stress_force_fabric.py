@@ -4,13 +4,13 @@
 Above, q/p measured, and predicted from the distributions of contact normals, forces and branches
 (rvelab/measure/anisotropy.hpp); below, their anisotropies along the stress: contact normals a_c, normal forces a_n,
 tangential forces a_t, branches a_l. Last, where the file has them, the share of contacts
-above the mean normal force and the share of q that they bear. The line that is printed has the largest difference of the
-prediction, and the mean one, relative, where q/p is above 0.1.
+above the mean normal force and their share of q. The printed line has the largest difference of the
+prediction, and the mean relative one for q/p above 0.1.
 """
 
 import argparse
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,7 +23,7 @@ STRONG = (("strong_contacts", "of the contacts"), ("strong_deviator", "of $q$"))
 def draw(stages, options):
     having = [stage for stage in kinds.joined(stages) if stage.has("stress_force_fabric")]
     if not having:
-        stages[-1].column("stress_force_fabric")  # says what is missing
+        stages[-1].column("stress_force_fabric")  # names the missing quantity
     stage = having[-1]
     strain, measured, predicted = 100 * stage.strain, stage.mobilised(), stage.column("stress_force_fabric")
     strong = [row for row in STRONG if stage.has(row[0])]
@@ -38,7 +38,7 @@ def draw(stages, options):
             axes[1].plot(strain, stage.column(name), label=label)
     axes[1].set_ylabel("anisotropy along the stress")
     for name, label in strong:
-        # Shares of a deviator that is next to nothing say nothing.
+        # Shares of a negligible deviator have no meaning.
         shown = np.where(measured > 0.02, stage.column(name), np.nan) if name == "strong_deviator" else stage.column(name)
         axes[2].plot(strain, shown, label=label)
     if strong:

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Stress paths: stress_path.py RECORDS.h5... -o stress_path.png (folders stand for their *.h5).
+"""Stress paths: stress_path.py RECORDS.h5... -o stress_path.png (a folder means its *.h5).
 
 Left, q against p of every stage with records, q = sqrt(s:s/2) in 2D and sqrt(3 s:s/2) in 3D; right, the stress path of 3D
 tests in the deviatoric plane (compression positive, axes z, x, y at 90, -30 and 210 degrees), of 2D tests the shear
 stress against the difference of the normal stresses. Compression positive. Of several specimens the mean path at equal
-strains is drawn over those of the specimens; --each leaves it out.
+strains is drawn over those of the specimens; --each omits it.
 """
 
 import argparse
 import math
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
@@ -52,7 +52,7 @@ def draw_axes_of_plane(plane):
         end = reach * math.cos(math.radians(angle)), reach * math.sin(math.radians(angle))
         plane.plot([0, end[0]], [0, end[1]], color="0.7", linewidth=0.8)
         plane.annotate(name, 1.06 * np.array(end), ha="center", va="center", color="0.4")
-    plane.update_datalim([(-1.12 * reach, -0.68 * reach), (1.12 * reach, 1.12 * reach)])  # the names stand within the frame
+    plane.update_datalim([(-1.12 * reach, -0.68 * reach), (1.12 * reach, 1.12 * reach)])  # the names are within the frame
     plane.autoscale_view()
     plane.set_title("deviatoric plane (kPa)", fontsize=10, loc="left")
 
@@ -66,7 +66,7 @@ def draw(stages, options):
         draw_path(plane, curve, lambda stage: (deviatoric_plane if three else shear_plane)(stage.stress), True, options.each)
     meridian.set_xlabel("mean stress $p$ (kPa)")
     meridian.set_ylabel("deviatoric stress $q$ (kPa)")
-    # Room beside a path that goes straight up.
+    # Space beside a vertical path.
     meridian.set_xlim(min(0, meridian.dataLim.x0), 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
     meridian.set_ylim(bottom=0)
     plane.plot([], [], "o", color="0.3", markersize=4, label="start")

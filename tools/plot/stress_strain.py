@@ -4,13 +4,13 @@
 Every monotonic stage; stages of one test that continue the same strain are joined. Above, q/p
 against the driving strain, q = sqrt(s:s/2) in 2D (then q/p is the sine of the mobilised friction angle) and
 sqrt(3 s:s/2) in 3D. Below, volumetric strain 1 - V/V0, compression positive, so that dilation goes down; of tests
-at constant volume the mean stress p. Tests that differ by their specimen alone are one curve, their mean, with a band of one standard deviation (curves.py); --each draws every
-one. Records at which a held stress was not held are crossed.
+at constant volume the mean stress p. Tests that differ only by their specimen are one curve, their mean, with a band of one standard deviation (curves.py); --each draws every
+one. Crosses mark records outside the tolerance of a held stress.
 """
 
 import argparse
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
@@ -31,7 +31,7 @@ def curves(stages):
 
 
 def cross_unheld(axes, curve):
-    """Crosses at records whose held stress was missed; how many."""
+    """Crosses at records outside the tolerance of a held stress; their number."""
     missed = 0
     for stage in curve.stages:
         off = ~stage.held
@@ -41,7 +41,7 @@ def cross_unheld(axes, curve):
 
 
 def draw_volume(axes, drawn, each):
-    """Volumetric strain, or where the volume of all tests is held the mean stress."""
+    """Volumetric strain, or the mean stress if the volume of all tests is constant."""
     stages = [stage for curve in drawn for stage in curve.stages]
     held = all(np.abs(stage.volumetric_strain).max() < ROUND_OFF for stage in stages)
     for curve in drawn:

@@ -2,8 +2,8 @@
 """Error against run time of a study: study.py FOLDER -o study.png (the folder that `rvelab study -o` wrote).
 
 Median error of the stress of an increment over p, against its processor time and against its grain-steps; the Pareto
-fronts that the study found are joined. Thin bars go up to the 95th percentile, crosses are root mean squares, which
-belong to the few increments in avalanches. Labels are the values of the varied keys.
+fronts of the study are joined. Thin bars reach to the 95th percentile, crosses are root mean squares, which
+the few increments in avalanches dominate. Labels are the values of the varied keys.
 """
 
 import argparse
@@ -11,7 +11,7 @@ import json
 import math
 import pathlib
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 
@@ -46,7 +46,7 @@ def label_of(point):
 
 
 def draw_against(axes, study, cost, unit, front):
-    """One panel, costs in `unit`; the points that both coordinates of can stand on logarithmic axes."""
+    """One panel, costs in `unit`; the points with positive coordinates, for logarithmic axes."""
     error, high, rms = "median_error_over_p", "percentile_95_error_over_p", "rms_error_over_p"
     shown = [point for point in study["points"] if is_positive(point[cost]) and is_positive(point[error])]
     for place, point in enumerate(sorted(shown, key=lambda point: point[cost])):
@@ -54,7 +54,7 @@ def draw_against(axes, study, cost, unit, front):
         if is_positive(point[high]):
             axes.plot([x, x], [y, point[high]], color="0.75", linewidth=1, zorder=1)
         axes.plot(x, y, "o", color="C0", markerfacecolor="C0" if point[front] else "white", markersize=6, zorder=3)
-        right = place % 2 == 1  # of neighbours one is labelled on either side
+        right = place % 2 == 1  # neighbours have their labels on different sides
         axes.annotate(label_of(point), (x, y), xytext=(6, 4) if right else (-6, -9), textcoords="offset points",
                       fontsize=7, ha="left" if right else "right")
     crosses = [(point[cost] / unit, point[rms]) for point in shown if is_positive(point[rms])]
@@ -70,7 +70,7 @@ def draw_against(axes, study, cost, unit, front):
         drawn = shown
     costs = [point[cost] / unit for point in drawn]
     errors = [point[error] for point in drawn] + [point[name] for point in shown for name in (high, rms)]
-    # Labels stand beside the points.
+    # Labels are beside the points.
     kinds.log_axis(axes.xaxis, [min(costs) / ROOM, *costs, max(costs) * ROOM])
     kinds.log_axis(axes.yaxis, [value for value in errors if is_positive(value)])
     return len(shown)

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Volumetric curves: volumetric.py RECORDS.h5... -o volumetric.png (folders stand for their *.h5).
+"""Volumetric curves: volumetric.py RECORDS.h5... -o volumetric.png (a folder means its *.h5).
 
-Left, void ratio against the driving strain of each stage with records (stages that go on are joined, mean and band over
-specimens as in stress_strain.py); right, against p (on a logarithmic axis where it changes by more than three), where the
-state goes to the critical state line, of every specimen. Needs void_ratio among [output] quantities, as it is by default.
+Left, void ratio against the driving strain of each stage with records (continued stages are joined, mean and band over
+specimens as in stress_strain.py); right, against p (on a logarithmic axis where it changes by more than three), for every
+specimen on its way to the critical state line. Needs void_ratio among [output] quantities, as it is by default.
 """
 
 import argparse
 
-import records  # first: it says which package is missing
+import records  # first: it names a missing package
 import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
 SPAN = 1e-3  # of the axis of void ratio at least
-LEAST_RANGE_OF_P = 0.1  # of p: where it is held, its tolerance is not to fill the axis
+LEAST_RANGE_OF_P = 0.1  # of p: if it is held, its tolerance must not fill the axis
 
 
 def draw_by_pressure(axes, drawn):
@@ -46,7 +46,7 @@ def draw(stages, options):
     strains = list(dict.fromkeys(stage.strain_in_words() for stage in stages))
     by_strain.set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
     by_strain.set_ylabel("void ratio $e$")
-    # At constant volume the void ratio changes by round-off alone: a level line, not its last digits.
+    # At constant volume the void ratio changes only by round-off: draw a horizontal line, not the last digits.
     kinds.least_span(by_strain, "y", SPAN)
     kinds.legend(by_pressure, None if options.each else kinds.band_in_words(drawn))
     by_strain.set_title("Volumetric curves", fontsize=11, loc="left")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What programs and libraries ask of the system that runs them, read from their symbols: elf_needs.py FILE...
+"""System requirements of programs and libraries, from their symbols: elf_needs.py FILE...
 
     glibc 2.34, no libstdc++; libraries: ld-linux-x86-64.so.2 libc.so.6 libgcc_s.so.1 libm.so.6
 
-Libraries that are among the files are not asked of the system. The tag of a wheel follows from this (PEP 600): manylinux_2_N
-says that any Linux with glibc 2.N has all that is needed.
+Libraries among the files are no requirements. The tag of a wheel follows from this (PEP 600): manylinux_2_N
+means that any Linux with glibc 2.N is sufficient.
 """
 
 import pathlib
@@ -23,7 +23,7 @@ def is_elf(file):
 
 
 class Needs:
-    """libraries: those needed and not among the files; versions: {"GLIBC": (2, 34), ...}, the newest that a symbol asks for."""
+    """libraries: those needed and not among the files; versions: {"GLIBC": (2, 34), ...}, the newest version of any symbol."""
 
     def __init__(self, files):
         self.libraries, self.versions, own, machines = set(), {}, set(), set()
@@ -46,7 +46,7 @@ class Needs:
         return sorted(name for name in self.libraries - SYSTEM if not LOADER.fullmatch(name))
 
     def platform_tag(self, machine=None):
-        """manylinux_2_N_MACHINE, or linux_MACHINE where that would be untrue."""
+        """manylinux_2_N_MACHINE, or linux_MACHINE if other libraries are needed."""
         machine = machine or platform.machine()
         glibc = self.versions.get("GLIBC", (2, 17))
         if self.others():

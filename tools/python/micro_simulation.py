@@ -5,14 +5,14 @@ In micro-manager-config.json "micro_file_name": "micro_simulation", and as data 
     read    dH_x, dH_y, dH_z             rows of dH, the increment of displacement gradient over the time window
     write   sigma_x, sigma_y, sigma_z    rows of the Cauchy stress at its end, Pa, tension positive
 
-Rows of z are left out in a 2D mesh. RVELAB_SPECIMEN names the specimen; RVELAB_PHYSICAL_TIME = 1 makes the time window
-physical time, else steps are quasi-static. A module of your own with a class of your own sets them in Python:
+A 2D mesh has no rows of z. RVELAB_SPECIMEN names the specimen; RVELAB_PHYSICAL_TIME = 1 makes the time window
+physical time, otherwise steps are quasi-static. Or set them in Python, in your own module and class:
 
     import micro_simulation
     class MicroSimulation(micro_simulation.MicroSimulation):
         specimen = "S.h5"
 
-A step that cannot be made raises rvelab.Discard, which the Micro Manager treats as a crash of that simulation."""
+A failed step raises rvelab.Discard, which the Micro Manager treats as a crash of that simulation."""
 from __future__ import annotations
 
 import csv
@@ -42,7 +42,7 @@ class MicroSimulation:
             raise ValueError("MicroSimulation has no specimen: let RVELAB_SPECIMEN name its file (rvelab pack)")
 
     def initialize(self) -> None:
-        """Makes the RVE, once. A simulation that adaptivity leaves inactive has none, until it is given a state."""
+        """Makes the RVE, once. A simulation that adaptivity keeps inactive has none until it gets a state."""
         if self._id:
             return
         if MicroSimulation._process != os.getpid():  # the first, or that of a forked child
@@ -65,7 +65,7 @@ class MicroSimulation:
             MicroSimulation._pool.release(self._id)
 
     def solve(self, macro_data: dict[str, np.ndarray], dt: float) -> dict[str, np.ndarray]:
-        """One time window from the state as it is, which moves on."""
+        """One time window from the present state, which it changes."""
         dH, n = np.zeros((3, 3)), len(macro_data["dH_x"])
         for i in range(n):
             dH[i, :n] = macro_data["dH_" + _AXES[i]]

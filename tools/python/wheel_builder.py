@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Makes the wheel of rvelab from a build: wheel_builder.py [FOLDER] (default: the folder build/release/wheel).
 
-It is the backend that pyproject.toml names, so `pip wheel --no-build-isolation --no-deps tools/python` and `pip install`
-work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the programs, the protocols with
+It is the backend of pyproject.toml, so `pip wheel --no-build-isolation --no-deps tools/python` and `pip install`
+also work, offline. The wheel contains the modules and, under rvelab/native, both libraries, the programs, the protocols with
 the curves that fits compare with, and the scripts of the figures. RVELAB_BUILD names another build, or the prefix of an
 installation. The same build gives the same bytes.
-Its name says what it needs: manylinux_2_N of a portable build (tools/package), linux where it counts on libraries of this
+Its name shows its requirements: manylinux_2_N for a portable build (tools/package), linux if it needs libraries of this
 machine.
 """
 
@@ -32,7 +32,7 @@ def build_folder():
 
 
 def native_files():
-    """(name in rvelab/native, file) of what the build made; SystemExit, naming it, if something is missing."""
+    """(name in rvelab/native, file) of the build; SystemExit names a missing file."""
     build = build_folder()
     found = [(f"lib/{name}", build / "lib" / name) for name in ("librvelab.so.1", "librvelab-h5.so.1")]
     found += [(program, build / program) for program in PROGRAMS]
@@ -58,7 +58,7 @@ def platform_tag():
 
 
 def licences():
-    """(name, bytes) of the licence of rvelab and, where an installation has them, of what is compiled in."""
+    """(name, bytes) of the licence of rvelab and, if the installation has them, of compiled-in libraries."""
     yield "LICENSE", (ROOT / "LICENSE").read_bytes()
     for file in sorted((build_folder() / "share/doc/rvelab/licences").glob("*")):
         yield f"licences/{file.name}", file.read_bytes()

@@ -1,4 +1,4 @@
-// What the calls of a host have in common, whatever their arguments: properties, state variables, the first stress.
+// Common parts of the calls of all hosts: properties, state variables, the first stress.
 #pragma once
 
 #include <cstdint>
@@ -10,48 +10,48 @@
 
 namespace umat {
 
-/// What stresses of the host are: sigma; R^T sigma R with R of the polar decomposition of F; or sigma before a step and
-/// R^T sigma R after it with R of the increment, which the host turns by R itself.
+/// Stress measure of the host: sigma; R^T sigma R with R of the polar decomposition of F; or sigma before a step and
+/// R^T sigma R after it with R of the increment, by which the host then rotates it.
 enum class Axes { global, corotational, turned_by_host };
 
-/// While a call lasts: the default floating-point environment and the locale of C, whatever the host has set.
+/// During a call: the default floating-point environment and the C locale, independent of the host's settings.
 struct CallEnvironment {
   rvelab::pool::FloatingPoint numbers{};
   rvelab::ClassicLocale text{};
 };
 
-/// What PROPS says.
+/// The content of PROPS.
 struct Properties {
   int material = 0;
   Axes axes = Axes::global;
-  bool physical = false;  ///< the host's time is time; else it is ignored
+  bool physical = false;  ///< the host's time is physical; otherwise it is ignored
 };
 
 inline int or_zero(const int* value) { return value == nullptr ? 0 : *value; }
 
-/// Throws std::runtime_error that names the property, its value and what is allowed.
+/// Throws std::runtime_error with the property, its value and the allowed values.
 Properties properties_of(const double* props, int n);
 
-/// A state variable as an integer; throws if it is none.
+/// A state variable as an integer; throws if it is not a whole number.
 std::int64_t whole_state(double value, const char* name);
 
-/// A number as a message tells it.
+/// A number in a message.
 std::string in_words(double value);
 
 /// The RVEs of this process: host and library share one pool for the life of it.
 Points& points();
 
-/// The specimen is in equilibrium with its own stress; a host that starts from another one would see a jump: throws
-/// unless `given`, in the host's components and axes, is within 1 % of it, or zero where the settings say that zero
-/// stands for it. R0: rotation of these axes. name: of the argument.
+/// The specimen is in equilibrium with its own stress; with a different initial stress the host would get a jump.
+/// Throws unless `given`, in the host's components and axes, is within 1 % of it, or zero if the settings define zero
+/// as that stress. R0: rotation of these axes. name: of the argument.
 void expect_first_stress(int material, const double* given, const Components& components, const Matrix3& R0,
                          const char* name);
 
-/// Appends a text to rvelab_umat.log in the folder where the host made its first call: each once, a hundred at most. To
-/// standard error where that cannot be written.
+/// Appends a text to rvelab_umat.log in the folder of the host's first call: each once, at most a hundred. Writes to
+/// standard error if that fails.
 void log_failure(const std::string& text);
 
-/// The working directory is looked up, for the log. Every call of a host begins with it.
+/// Stores the working directory for the log. Every call of a host begins with it.
 void remember_folder();
 
 }  // namespace umat

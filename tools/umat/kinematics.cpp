@@ -34,7 +34,7 @@ Matrix3 strain_of(const double* from, const Components& components) { return sym
 Matrix3 increment(const Matrix3& F0, const Matrix3& F1) { return (F1 - F0) * F0.inverse(); }
 
 Matrix3 exponential_increment(const Matrix3& E) {
-  // E (I + E/2 (I + E/3 (...))); 24 terms are exact to the last bits up to |E| = 1, more than a step can hold.
+  // E (I + E/2 (I + E/3 (...))); 24 terms are exact to the last bits up to |E| = 1, more than any step.
   Matrix3 sum = Matrix3::Identity();
   for (int k = 24; k > 1; --k) sum = Matrix3::Identity() + E * sum / k;
   return E * sum;
@@ -54,7 +54,7 @@ Matrix6 in_order_of_hosts(const RowMajor6& tangent) {
 }
 
 Matrix6 turned(const Matrix6& tangent, const Matrix3& R) {
-  // Q: stresses by their components; strains with engineering shear turn by its inverse transpose (Bond 1943).
+  // Q: stresses by their components; strains with engineering shear transform by its inverse transpose (Bond 1943).
   Matrix6 Q;
   for (int k = 0; k < 6; ++k) {
     const auto [a, b] = axis[k];

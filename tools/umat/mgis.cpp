@@ -14,7 +14,7 @@ namespace umat::mgis {
 
 namespace {
 
-/// What K[0] to K[2] ask for.
+/// The request in K[0] to K[2].
 struct Wanted {
   bool prediction = false;  ///< the tangent at the start of the step, without a step
   bool tangent = false;
@@ -99,7 +99,7 @@ struct Call {
       write_symmetric(stress, dimension, data.s1.thermodynamic_forces);
   }
 
-  /// from, to: start of the step and the state that the tangent belongs to.
+  /// from, to: start of the step and the state of the tangent.
   void write_tangent(const Matrix6& tangent, const Matrix3& sigma, const Matrix3& from, const Matrix3& to) const {
     const std::vector<double> rows = kinematics == Kinematics::small_strain
                                          ? small_strain_tangent(tangent, dimension)
@@ -109,7 +109,7 @@ struct Call {
 
   void write_speed(const Matrix6& tangent, const double* density, const Matrix3& F) const {
     if (data.speed_of_sound == nullptr || density == nullptr || !(*density > 0))
-      throw std::runtime_error("the speed of sound is asked for, and mass_density is " +
+      throw std::runtime_error("the speed of sound is requested, and mass_density is " +
                                (density == nullptr ? "null" : in_words(*density)) +
                                "; give the density of the material, above 0");
     *data.speed_of_sound = std::sqrt(std::max(wave_modulus(tangent), 0.0) * F.determinant() / *density);
@@ -124,7 +124,7 @@ void tell(PointData& data, const std::string& text) {
   data.error_message[length] = '\0';
 }
 
-/// Unbalanced moments of the grains leave a small skew part, which the other measures would spread.
+/// Unbalanced moments of the grains cause a small skew part, which the other measures would mix into all components.
 Matrix3 symmetric_part(const Matrix3& sigma) { return 0.5 * (sigma + sigma.transpose()); }
 
 State state_of(const double* states) { return {whole_state(states[0], "RveId"), whole_state(states[1], "RveToken")}; }

@@ -1,4 +1,4 @@
-// The generic interface of MFront, by which hosts of MGIS call a material: what they hand in, and the entry points.
+// The generic interface of MFront, by which hosts of MGIS call a material: its arguments and entry points.
 //
 // Layout, values of K[0] to K[2] and symbols are those that MGIS publishes (MGIS/Behaviour/BehaviourDataView.hxx and
 // StateView.hxx, src/BehaviourDescription.cxx of MFrontGenericInterfaceSupport), version 1 of the interface: MGIS
@@ -24,7 +24,7 @@ struct StateOf {
 struct PointData {
   char* error_message;  ///< null, or room for 512 characters
   double dt;
-  double* K;    ///< in: K[0] what is asked for, K[1] stress, K[2] tangent; out: the tangent, row by row
+  double* K;    ///< in: K[0] the request, K[1] stress, K[2] tangent; out: the tangent, row by row
   double* rdt;  ///< factor on the step that the host may take next
   double* speed_of_sound;
   StateOf<const double> s0;
@@ -34,9 +34,9 @@ struct PointData {
 /// The kinematics of a behaviour.
 enum class Kinematics { small_strain, deformation_gradient };
 
-/// One call: 1, done; 0, done, and the specimen is in no equilibrium; -1, not done: state as it was, rdt smaller where
-/// a smaller step may do. The text of 0 and -1 is in error_message. Planes (2) have 4 symmetric and 5 other components,
-/// space (3) 6 and 9.
+/// One call: 1, done; 0, done, but the specimen is not in equilibrium; -1, failed: state unchanged, rdt smaller if a
+/// smaller step may succeed. The text of 0 and -1 is in error_message. Planes (2) have 4 symmetric and 5 other
+/// components, space (3) 6 and 9.
 int integrate(Kinematics kinematics, int dimension, PointData* data) noexcept;
 
 }  // namespace umat::mgis

@@ -1,6 +1,6 @@
-// What MGIS and TFEL read of a behaviour before they call it: one symbol for each property, in C linkage.
+// Symbols of a behaviour that MGIS and TFEL read before they call it: one for each property, with C linkage.
 //
-// A new behaviour is a row below. Lists that are empty still need their symbol.
+// A new behaviour is a row below. Empty lists need their symbol, too.
 #include "rvelab/io/version.hpp"
 #include "tools/umat/mgis.hpp"
 
@@ -15,8 +15,8 @@
   }
 
 // Types of variables: 0 scalar, 1 symmetric tensor, 3 tensor. Kinds: 1 small strain, 2 finite strain. Kinematics: 1
-// small strain and stress, 3 F and Cauchy stress. Symmetry 0: the host need not turn anything into axes of a material,
-// since those of an RVE are the axes of space.
+// small strain and stress, 3 F and Cauchy stress. Symmetry 0: the host does not rotate into material axes, since the
+// axes of an RVE are those of space.
 #define RVELAB_BEHAVIOUR(name, kind, kinematic, gradient, gradient_type, kinematics)          \
   RVELAB_TEXT(name, mfront_ept, #name);                                                       \
   RVELAB_NUMBER(name, mfront_mkt, 1);                                                         \

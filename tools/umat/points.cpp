@@ -7,7 +7,7 @@ namespace umat {
 
 namespace {
 
-/// What the user of a host can do about an error of a trial.
+/// Remedy of the user of a host for an error of a trial.
 std::string remedy(std::int32_t status) {
   switch (status) {
     case RVELAB_E_ID:
@@ -48,7 +48,7 @@ rvelab_info info_of(rvelab_pool* pool, std::int64_t id) {
   return info;
 }
 
-/// Tries of first increments that can be gone on from: some 100 MB. RVEs of as many points take a thousand times that.
+/// First increments that can be accepted: some 100 MB. RVEs of as many points take a thousand times that.
 constexpr std::int64_t most_tries = 1 << 20;
 
 }  // namespace
@@ -70,7 +70,7 @@ const Material& Points::material(int number, const char* property) const {
                            "; correct it, or add [[material]] with number = " + std::to_string(number));
 }
 
-/// The caller holds population_ alone.
+/// The caller holds population_ exclusively.
 Points::Loaded& Points::loaded(int number) {
   const auto found = templates_.find(number);
   if (found != templates_.end()) return found->second;
@@ -83,7 +83,7 @@ Points::Loaded& Points::loaded(int number) {
     expect_done(rvelab_release(pool_, 1, &id));
     id = 0;
     return templates_.emplace(number, made).first->second;
-  } catch (...) {  // the next call begins anew
+  } catch (...) {  // the next call begins again
     if (id != 0) rvelab_release(pool_, 1, &id);
     if (made.number != 0) rvelab_template_release(pool_, made.number);
     throw;
@@ -185,7 +185,7 @@ State Points::remembered(const Try& made) {
   return {-(forgotten_ + std::int64_t(tries_.size())), tag_};
 }
 
-/// The RVE of a first increment, which is made again with the same bits.
+/// The RVE of a first increment, which is repeated with the same bits.
 State Points::claimed(const State& first) {
   Try made;
   {
@@ -199,7 +199,7 @@ State Points::claimed(const State& first) {
     if (place < 0)
       throw std::runtime_error("the state variables name a first increment that was made more than " +
                                std::to_string(most_tries) +
-                               " calls ago; begin that point anew, with state variables 0, or use fewer points");
+                               " calls ago; begin that point again, with state variables 0, or use fewer points");
     made = tries_[std::size_t(place)];
   }
   State own = spawn(made.material);

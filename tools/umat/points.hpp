@@ -1,4 +1,4 @@
-// The RVEs of a host's material points: one pool, spawned into when the first increment of a point is accepted.
+// The RVEs of a host's material points: one pool; an RVE is made when the first increment of a point is accepted.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace umat {
 
-/// The state that a step begins or ends in, as two state variables of the host hold it. id 0: the specimen; below 0:
-/// the end of a first increment, which gets an RVE once a call goes on from it.
+/// State at the start or end of a step, as two state variables of the host. id 0: the specimen; below 0: the end of a
+/// first increment, for which an RVE is made when a call continues from it.
 struct State {
   std::int64_t id = 0, token = 0;
 };
@@ -27,38 +27,37 @@ struct Step {
   Matrix6 tangent;  ///< Pa, order of the host
   double dt_scale = 1;
   State end;
-  std::string text;  ///< of a status that is not RVELAB_OK
+  std::string text;  ///< of a status other than RVELAB_OK
 };
 
 class Points {
  public:
   explicit Points(const Settings& settings);
 
-  /// The settings of a material. Throws std::runtime_error if there is none of that number, which the host calls
-  /// `property`.
+  /// The settings of a material. Throws std::runtime_error for an unknown number; `property`: its name in the host.
   const Material& material(int number, const char* property = "PROPS(1)") const;
 
-  /// Of the settings, as the host names it.
+  /// Path of the settings, as given by the host.
   const std::string& file() const { return settings_.path; }
 
   /// Stress of the specimen of a material, Pa.
   Matrix3 first_stress(int material);
 
-  /// Elastic tangent of the specimen of a material, Pa, order of the host. It is made once.
+  /// Elastic tangent of the specimen of a material, Pa, order of the host. Computed once.
   Matrix6 first_tangent(int material);
 
   /// Stress of the committed state of an RVE, Pa.
   Matrix3 stress(std::int64_t id);
 
-  /// A new RVE, for a host whose calls are all for good.
+  /// A new RVE, for a host that accepts every call.
   State spawn(int material);
   void release(const State& state) noexcept;
 
-  /// One trial; on any thread. First increments are tried by RVEs that all points share: hosts name a point anew, or
-  /// not at all, and keep one of many tries.
+  /// One trial; on any thread. First increments use RVEs that all points share, since hosts may repeat them, do not
+  /// identify their points, and accept one of many.
   Step step(int material, const State& from, const Matrix3& dH, double dt, bool with_tangent);
 
-  /// A state of its own for a point whose first increment was refused: that of the specimen.
+  /// A separate state for a point whose first increment failed: that of the specimen.
   State unmoved(int material) { return remembered({material, 0, Matrix3::Zero(), false}); }
 
  private:
@@ -72,7 +71,7 @@ class Points {
     int material = 0;
     double dt = 0;
     Matrix3 dH;
-    bool moved = true;  ///< else the specimen as it is
+    bool moved = true;  ///< false: the unchanged specimen
   };
   struct Borrowed;
   Loaded& loaded(int material);
@@ -82,15 +81,15 @@ class Points {
   State claimed(const State& first);
 
   Settings settings_;
-  rvelab_pool* pool_ = nullptr;   ///< lives as long as the process: hosts have no last call
-  std::shared_mutex population_;  ///< exclusive for spawning, which no work may stand beside
+  rvelab_pool* pool_ = nullptr;   ///< exists as long as the process: hosts have no last call
+  std::shared_mutex population_;  ///< exclusive for spawning, which excludes all other work
   std::map<int, Loaded> templates_;
 
-  std::mutex first_;                          ///< of what follows; population_ is never waited for with it
-  std::int64_t tag_ = 0;                      ///< drawn at random: the token of all tries of this process
+  std::mutex first_;                          ///< of the members below; not held while waiting for population_
+  std::int64_t tag_ = 0;                      ///< random: the token of all first increments of this process
   std::deque<Try> tries_;                     ///< the newest last
-  std::int64_t forgotten_ = 0;                ///< tries before those
-  std::map<std::int64_t, State> claimed_;     ///< RVEs of tries that a call went on from
+  std::int64_t forgotten_ = 0;                ///< number of removed ones
+  std::map<std::int64_t, State> claimed_;     ///< RVEs of accepted first increments
   std::map<int, std::vector<State>> shared_;  ///< at rest in the state of the specimen, by material
 };
 

@@ -7,13 +7,13 @@ namespace umat {
 
 namespace {
 
-/// Whether `next` begins where `refused` did. Round-off is far below a thousandth of an increment.
+/// Whether `next` begins like `refused`. Round-off is far below a thousandth of an increment.
 bool same_place(const Beginning& refused, const Beginning& next) {
   constexpr double tolerance = 1e-3;
   if (next.time - refused.time > tolerance * refused.dt && refused.dt > 0) return false;
   if (refused.F0 != Matrix3::Identity() || next.F0 != Matrix3::Identity())
     return (next.F0 - refused.F0).norm() <= tolerance * (refused.F1 - refused.F0).norm();
-  // Hosts may have turned the strain by the increment to come.
+  // Hosts may have rotated the strain by the coming increment.
   const auto principal = [](const Matrix3& strain) {
     return Eigen::SelfAdjointEigenSolver<Matrix3>(strain, Eigen::EigenvaluesOnly).eigenvalues();
   };
@@ -25,7 +25,7 @@ bool same_place(const Beginning& refused, const Beginning& next) {
 void Refusals::add(const Beginning& refused) {
   const std::lock_guard lock(mutex_);
   refused_.insert_or_assign(refused.state.id, refused);
-  // First increments are refused from a state of their own each time; the oldest of many are over.
+  // Each failed first increment has a separate state; the oldest of many are removed.
   constexpr std::size_t most = 1 << 20;
   const auto first_rve = refused_.lower_bound(0);
   if (refused_.size() > most && first_rve != refused_.begin()) refused_.erase(std::prev(first_rve));

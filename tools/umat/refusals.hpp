@@ -1,5 +1,5 @@
-// Increments that were refused (PNEWDT below 1). A host that does not obey goes on from where the refused increment
-// would have ended, with an RVE that has not made it: its next call tells.
+// Failed increments (PNEWDT below 1). A host that ignores PNEWDT continues from the end of the failed increment, while
+// the RVE is still at its start; the next call of the host reveals this.
 #pragma once
 
 #include <map>
@@ -9,24 +9,24 @@
 
 namespace umat {
 
-/// Where a call begins, in what the host says of it.
+/// The start of a call, from the arguments of the host.
 struct Beginning {
   State state;
-  Matrix3 F0 = Matrix3::Identity(), F1 = Matrix3::Identity();  ///< unit matrices where the host gives none
+  Matrix3 F0 = Matrix3::Identity(), F1 = Matrix3::Identity();  ///< unit matrices if the host gives none
   Matrix3 strain = Matrix3::Zero(), strain_increment = Matrix3::Zero();
   double time = 0, dt = 0;  ///< s
 };
 
 class Refusals {
  public:
-  /// The increment from that beginning was refused.
+  /// The increment from this start has failed.
   void add(const Beginning& refused);
 
-  /// Throws where an increment was refused from the state of `next`, and `next` begins elsewhere: with another DFGRD0;
-  /// where that is the unit matrix with other principal values of STRAN; or later.
+  /// Throws if an increment from the state of `next` has failed and `next` has another start: another DFGRD0; if that
+  /// is the unit matrix, other principal values of STRAN; or a later time.
   void expect_obeyed(const Beginning& next);
 
-  /// A step was made from that state: refusals from another state of its RVE are over.
+  /// A step was made from this state: failures from another state of its RVE are removed.
   void forget_others(const State& from);
 
  private:

@@ -16,10 +16,10 @@ namespace umat {
 
 namespace {
 
-/// What stands in the file, as a message shows it.
+/// A value of the file, in a message.
 std::string shown(const std::string& text) { return rvelab::keys::shortened(rvelab::io::printable(text)); }
 
-/// One table of the file, with words for what is wrong in it.
+/// One table of the file, with messages of its errors.
 struct Table {
   const std::string& path;
   std::string name;
@@ -97,7 +97,7 @@ Settings read_settings(const std::string& path) {
   settings.path = path;
   if (rvelab_pool_def_init(&settings.pool, sizeof settings.pool) < RVELAB_OK)
     throw std::runtime_error(rvelab_last_error());
-  settings.pool.workers = 1;  // the host's threads are those that work
+  settings.pool.workers = 1;  // the host's threads do the work
   const Table whole{settings.path, "file", file};
   whole.expect_keys({"pool", "material"});
   if (const toml::node* const node = file.get("pool"); node != nullptr) {

@@ -26,7 +26,7 @@ Matrix3 contracted(const Matrix6& tangent, const Matrix3& d) {
   return found;
 }
 
-/// Change of the Cauchy stress with the velocity gradient l: its symmetric part strains, its skew part turns.
+/// Change of the Cauchy stress with the velocity gradient l: its symmetric part is a strain, its skew part a rotation.
 Matrix3 change_of_cauchy(const Matrix6& tangent, const Matrix3& sigma, const Matrix3& l) {
   const Matrix3 spin = 0.5 * (l - l.transpose());
   return contracted(tangent, 0.5 * (l + l.transpose())) + spin * sigma - sigma * spin;
@@ -145,7 +145,7 @@ double wave_modulus(const Matrix6& tangent) {
         Eigen::Vector3d n(x, y, z);
         if (n.norm() == 0) continue;
         n.normalize();
-        // From n the polarisation m of the fastest wave, from m the best n: the modulus grows with each turn.
+        // From n the polarisation m of the fastest wave, from m the best n: the modulus grows with each iteration.
         for (int turn = 0; turn < 20; ++turn) {
           Matrix3 acoustic;
           for (int k = 0; k < 3; ++k) {

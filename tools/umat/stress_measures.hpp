@@ -1,4 +1,4 @@
-// Stress measures of finite strain, and the tangent of each with respect to the strain that goes with it.
+// Stress measures of finite strain, and the tangent of each with respect to its conjugate strain.
 #pragma once
 
 #include <vector>
@@ -26,7 +26,7 @@ void write_symmetric(const Matrix3& tensor, int dimension, double* to);
 void write_any(const Matrix3& tensor, int dimension, double* to);
 
 /// The tangent in the rows and columns of the host, row by row, of a material whose Cauchy stress follows `tangent`
-/// (order of hosts, engineering shear) at zero spin and turns with the spin. F0 and F1: start and end of the step,
+/// (order of hosts, engineering shear) at zero spin and rotates with the spin. F0 and F1: start and end of the step,
 /// sigma and tangent: at its end.
 std::vector<double> finite_strain_tangent(TangentKind kind, const Matrix6& tangent, const Matrix3& sigma,
                                           const Matrix3& F0, const Matrix3& F1, int dimension);

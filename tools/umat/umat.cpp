@@ -13,15 +13,15 @@ namespace umat {
 
 namespace {
 
-/// What a call says of its point, in the host's layout.
+/// The arguments of a call, in the host's layout.
 struct Call {
   double *stress, *statev, *ddsdde, *pnewdt;
   Components components;
   Properties properties;
   Beginning from{};
   Matrix3 dH{};
-  const double* drot = nullptr;                                ///< null too where no gradients are given
-  Matrix3 R0 = Matrix3::Identity(), R1 = Matrix3::Identity();  ///< of start and end, where the host turns with it
+  const double* drot = nullptr;                                ///< also null without gradients
+  Matrix3 R0 = Matrix3::Identity(), R1 = Matrix3::Identity();  ///< of start and end, if the host's axes rotate
 };
 
 Refusals& refusals() {
@@ -59,7 +59,7 @@ void read_increment(const double* dstran, const double* dfgrd0, const double* df
     throw std::runtime_error("NDI is 2, and DFGRD0(3,3) and DFGRD1(3,3) are " + std::to_string(F0(2, 2)) + " and " +
                              std::to_string(F1(2, 2)) + ": discs have neither stress nor strain along z; allowed: no " +
                              "change, as plane strain elements have it");
-  // Small-strain analyses hand in gradients that stand still.
+  // Small-strain analyses pass constant gradients.
   call.dH = F0 == F1 && !strain.isZero(0) ? exponential_increment(strain) : increment(F0, F1);
   if (call.properties.axes == Axes::corotational) {
     call.R0 = rotation_of(F0);
@@ -69,8 +69,8 @@ void read_increment(const double* dstran, const double* dfgrd0, const double* df
   }
 }
 
-/// Abaqus hands in the stress that was returned, turned by the rotation DROT of the increment to come. A host that
-/// turned it by the last increment's hands in the DROT of that one; the stress that it balances is then turned twice.
+/// Abaqus passes the returned stress, rotated by the rotation DROT of the coming increment. A host that rotated it by
+/// the last increment passes the DROT of that one; the stress in its equilibrium is then rotated twice.
 void expect_not_turned(const Call& call, std::int64_t id) {
   if (call.properties.axes != Axes::global || call.drot == nullptr) return;
   const Eigen::Map<const Matrix3> Q(call.drot);
@@ -86,11 +86,11 @@ void expect_not_turned(const Call& call, std::int64_t id) {
         "is returned; give PROPS(2) = 2 (MOOSE: or decomposition_method = HughesWinget, with PROPS(2) = 0)");
 }
 
-/// Stress and state as they were, and the request for a smaller increment. Hosts hand in no request as 1 or more, or as
-/// a number below 0 (CalculiX).
+/// Unchanged stress and state, and the request for a smaller increment. Hosts pass 1 or more, or a number below 0
+/// (CalculiX), for no request.
 void refuse(const Call& call, const Step& step) {
   Beginning refused = call.from;
-  if (refused.state.id == 0) {  // a point that may have no name is known by its state
+  if (refused.state.id == 0) {  // the point is identified by its state
     refused.state = points().unmoved(call.properties.material);
     call.statev[0] = double(refused.state.id);
     call.statev[1] = double(refused.state.token);
@@ -159,7 +159,7 @@ void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double
     call.from.state = {whole_state(statev[0], "STATEV(1)"), whole_state(statev[1], "STATEV(2)")};
     if (dstran != nullptr) call.from.strain_increment = strain_of(dstran, components);
     if (stran != nullptr) call.from.strain = strain_of(stran, components);
-    if (time != nullptr) call.from.time = *time;  // some hosts have no second
+    if (time != nullptr) call.from.time = *time;  // some hosts pass only one time
     if (dtime != nullptr) call.from.dt = *dtime;
     call.drot = drot;
     read_increment(dstran, dfgrd0, dfgrd1, call);

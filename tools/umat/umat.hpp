@@ -4,9 +4,9 @@
 namespace umat {
 
 /// Arguments as in Abaqus's manual, by Fortran's rules. Those read: STRESS (checked on the first call, and for hosts
-/// that turn it), STATEV (two numbers: id and token), STRAN, DSTRAN, TIME(1), DTIME, NDI, NSHR, NTENS, NSTATV, PROPS,
-/// NPROPS, DROT, PNEWDT, DFGRD0, DFGRD1, NOEL, NPT. Those written: STRESS, STATEV, DDSDDE, PNEWDT. What is not needed
-/// may be null. Lengths of texts that compilers append are not read.
+/// that rotate it), STATEV (two numbers: id and token), STRAN, DSTRAN, TIME(1), DTIME, NDI, NSHR, NTENS, NSTATV, PROPS,
+/// NPROPS, DROT, PNEWDT, DFGRD0, DFGRD1, NOEL, NPT. Those written: STRESS, STATEV, DDSDDE, PNEWDT. Arguments that are
+/// not needed may be null. Lengths of texts that compilers append are not read.
 extern "C" [[gnu::visibility("default")]] void umat_(
     double* stress, double* statev, double* ddsdde, double* sse, double* spd, double* scd, double* rpl, double* ddsddt,
     double* drplde, double* drpldt, const double* stran, const double* dstran, const double* time, const double* dtime,

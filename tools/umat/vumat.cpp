@@ -16,7 +16,7 @@ namespace umat {
 
 namespace {
 
-/// Axes of the columns of tensors: of symmetric ones the first ndir + nshr, of gradients in three dimensions all.
+/// Axes of the columns of tensors: of symmetric ones the first ndir + nshr, of gradients in space all.
 constexpr int axis_of_block[9][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}, {1, 0}, {2, 1}, {0, 2}};
 
 /// The block of points of one call, whose arrays are of the host's precision.
@@ -28,14 +28,14 @@ struct Block {
   Real *stress, *state, *energy, *inelastic;
   Properties properties{};
   double dt = 0;
-  bool elastic = false;  ///< the call before the first increment, by which the host finds the speed of waves
+  bool elastic = false;  ///< the call before the first increment, by which the host determines the wave speed
   Components components() const { return {direct, shear}; }
 
   std::size_t place(int point, int column) const {
     return std::size_t(point) + std::size_t(points) * std::size_t(column);
   }
 
-  /// A symmetric tensor, its shear as the tensor has it.
+  /// A symmetric tensor, with tensor shear.
   Matrix3 symmetric(const Real* array, int point) const {
     Matrix3 tensor = Matrix3::Zero();
     for (int k = 0; k < direct + shear; ++k) {
@@ -65,7 +65,7 @@ struct Block {
     return F;
   }
 
-  /// State variables that hold id or token: one in double precision, in single three whole numbers of 18 bits.
+  /// State variables of an id or token: one in double precision, in single precision three whole numbers of 18 bits.
   static constexpr int pieces = sizeof(Real) == sizeof(double) ? 1 : 3;
   static constexpr std::int64_t base = 1 << 18;
 
@@ -92,8 +92,8 @@ struct Block {
   }
 };
 
-/// Single precision is told by the number of the material: of whole numbers below two millions the first half of a
-/// double is zero, and that of a float is all there is.
+/// Single precision is detected by the number of the material: for whole numbers below two millions the first half of a
+/// double is zero, and that of a float is the number.
 bool in_single_precision(const void* props, int n) {
   if (props == nullptr || n < 1) return false;
   float first = 0;
@@ -101,8 +101,8 @@ bool in_single_precision(const void* props, int n) {
   return std::abs(first) >= 0.5f && std::abs(first) < 1e9f;
 }
 
-/// The whole increment, in parts where the host's is too large: an explicit host cannot try a smaller one. `small`: the
-/// strain, where that is all there is.
+/// The whole increment, divided if it is too large: an explicit host cannot repeat it with a smaller one. `small`: the
+/// strain, if the host gives no gradient.
 Matrix3 advance(int material, double dt, State& state, const Matrix3& F0, const Matrix3& F1,
                 const std::optional<Matrix3>& small) {
   constexpr double smallest_part = 1.0 / 1024;
@@ -125,7 +125,7 @@ Matrix3 advance(int material, double dt, State& state, const Matrix3& F0, const 
   return step.sigma;
 }
 
-/// Stress in the axes that turn with the material; `state` is that at the end.
+/// Stress in the axes that rotate with the material; `state` is that at the end.
 template <class Real>
 Matrix3 new_stress(const Block<Real>& block, int point, State& state) {
   const int material = block.properties.material;
@@ -140,8 +140,8 @@ Matrix3 new_stress(const Block<Real>& block, int point, State& state) {
     return old + stress_of(stresses.data(), Components{3, 3});
   }
   const Matrix3 F1 = block.gradient(block.F1, point), R1 = rotation_of(F1);
-  // Analyses of small strain hand in gradients that stand still. In single precision others may stand too, until small
-  // increments have come to more than round-off: the next gradient holds those.
+  // Small-strain analyses pass constant gradients. In single precision other gradients may also stay constant until
+  // small increments exceed round-off; the next gradient then includes them.
   const bool still = F0 == F1 && (sizeof(Real) == sizeof(double) || F0 == Matrix3::Identity());
   const std::optional<Matrix3> alone = still ? std::optional(small) : std::nullopt;
   if (state.id != 0) return R1.transpose() * advance(material, block.dt, state, F0, F1, alone) * R1;
@@ -166,7 +166,7 @@ void expect_allowed(const Block<Real>& block, const int* lanneal) {
     throw std::runtime_error("nstatev is " + std::to_string(block.states) +
                              (block.pieces == 1 ? "; give 2 state variables (*DEPVAR): id and token"
                                                 : "; the job is in single precision: give 6 state variables (*DEPVAR), "
-                                                  "id and token in three pieces each, or run it with double=both"));
+                                                  "three each for id and token, or run it with double=both"));
   if (or_zero(lanneal) != 0)
     throw std::runtime_error("lanneal is " + std::to_string(*lanneal) +
                              "; allowed: 0; grains cannot be annealed, take the annealing step out");
@@ -247,7 +247,7 @@ void umat::vumat_(const int* nblock, const int* ndir, const int* nshr, const int
   };
   try {
     remember_folder();
-  } catch (const std::exception&) {  // no memory for its name; it is looked up again
+  } catch (const std::exception&) {  // no memory for its name; it is determined again
   }
   in_single_precision(props, or_zero(nprops)) ? serve(float{}) : serve(double{});
 }

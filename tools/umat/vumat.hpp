@@ -7,7 +7,7 @@ namespace umat {
 /// nshr, nstatev, nprops, lanneal, stepTime, totalTime, dt, props, density, strainInc, defgradOld, defgradNew,
 /// stressOld, stateOld (two numbers a point: id and token), enerInternOld, enerInelasOld. Those written: stressNew,
 /// stateNew, enerInternNew, enerInelasNew. density, strainInc and energies may be null; then no energies are written.
-/// Where props(1) is a float, all arrays are of floats, and id and token take three state variables each.
+/// If props(1) is a float, all arrays are of floats, and id and token take three state variables each.
 extern "C" [[gnu::visibility("default")]] void vumat_(
     const int* nblock, const int* ndir, const int* nshr, const int* nstatev, const int* nfieldv, const int* nprops,
     const int* lanneal, const double* stepTime, const double* totalTime, const double* dt, const char* cmname,

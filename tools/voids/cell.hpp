@@ -1,4 +1,4 @@
-// The periodic cell that grains lie in.
+// The periodic cell of the grains.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What the program prints: a line a quantity, or one JSON object.
+// The output of the program: one line per quantity, or one JSON object.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace rvelab::voids {
 
 class Listing {
  public:
-  /// Number, text or list of texts; keys end in their unit, which the lines have behind the number too.
+  /// Number, text or list of texts; keys end in their unit, which the lines repeat after the number.
   void add(const std::string& key, nlohmann::ordered_json value, const std::string& unit = "") {
     std::ostringstream text;
     if (value.is_number_float() && std::isnan(value.get<double>()))

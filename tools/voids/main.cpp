@@ -1,5 +1,5 @@
-// rvelab-voids: local void ratios, pore sizes and an estimate of the permeability of a specimen. A program by itself
-// because CGAL's triangulations are under the GPL: rvelab and its libraries hold none of them.
+// rvelab-voids: local void ratios, pore sizes and an estimate of the permeability of a specimen. It is a separate
+// program because CGAL's triangulations are under the GPL; rvelab and its libraries do not contain them.
 #include <rvelab/rvelab.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Options {
   bool force = false, json = false;
 };
 
-/// Value below which a share of the values lies; linear between neighbours in their order. NaN of none.
+/// Quantile of the values, linear between neighbours in their order. NaN for no values.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());

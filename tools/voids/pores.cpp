@@ -10,7 +10,7 @@
 namespace rvelab::voids {
 namespace {
 
-/// The grains at a simplex and all that share a simplex with one of them, as corners.
+/// The grains of a simplex and all that share a simplex with one of them, as corners.
 class Neighbours {
  public:
   Neighbours(const std::vector<Simplex>& simplices, std::size_t balls) : of_(balls) {
@@ -41,7 +41,7 @@ Eigen::MatrixXd frame_of(const std::vector<Ball>& balls) {
   return q.leftCols(edges.cols());
 }
 
-/// All lists of the simplex with one corner less.
+/// All lists of the simplex without one corner.
 std::vector<Simplex> faces_of(const Simplex& simplex) {
   std::vector<Simplex> faces;
   for (std::size_t left_out = 0; left_out < simplex.size(); ++left_out) {
@@ -70,7 +70,7 @@ struct Geometry {
 /// of these give the same pore.
 using ByCorners = std::map<Simplex, Pore>;
 
-/// Grains of `near` that a pore touches; none if one of them cuts it.
+/// Grains of `near` that a pore touches; empty if one of them intersects it.
 Simplex touched_near(const Geometry& geometry, const std::set<Corner>& near, const Pore& pore, double tolerance) {
   Simplex touched;
   for (const Corner& corner : near) {
@@ -82,13 +82,13 @@ Simplex touched_near(const Geometry& geometry, const std::set<Corner>& near, con
   return touched;
 }
 
-/// Adds the ball that touches all corners, if it has a size and no neighbour cuts it.
+/// Adds the ball that touches all corners, if its radius is positive and no neighbour intersects it.
 void add_pore(const Geometry& geometry, const Simplex& corners, const Neighbours& neighbours, ByCorners& pores) {
   Pore pore;
   if (!touching_ball(geometry.at(corners), pore)) return;
   const double tolerance = 1e-6 * geometry.balls[std::size_t(corners[0].ball)].radius;
   if (!(pore.radius > tolerance)) return;
-  // Of more than d + 1 grains, the neighbours of those that a first look finds may show others.
+  // With more than d + 1 grains, the neighbours of those found first may include others.
   Simplex touched = corners;
   for (std::size_t before = 0; touched.size() != before;) {
     before = touched.size();
@@ -150,7 +150,7 @@ Pores pores(const PeriodicCell& cell, const std::vector<Ball>& balls, const Powe
     for (Simplex& face : faces_of(simplex)) faces.insert(canonical(std::move(face)));
   }
   for (const Simplex& face : faces) add_pore(geometry, face, neighbours, throats);
-  // A plane through the middle of a body that touches more grains than it needs to is no throat.
+  // A plane through the centre of a body that touches more than d + 1 grains is no throat.
   for (const auto& [corners, body] : bodies) throats.erase(corners);
   return {listed(bodies), listed(throats)};
 }

@@ -1,12 +1,12 @@
 // Pore sizes and an estimate of the permeability, from the power cells of discs or spheres.
 //
-// Body: a sphere (disc) that touches the four (three) grains of a simplex from outside and is cut by none. Throat: in
+// Body: a sphere (disc) that touches the four (three) grains of a simplex from outside and intersects none. Throat: in
 // space the circle in the plane of three grains that touches them (Reboul, Vincens and Cambou 2008), in the plane half
-// of the gap of two discs; it is cut by none either. Bodies may overlap: those of one wide pore are not merged.
+// of the gap of two discs; it also intersects none. Bodies may overlap: those of one wide pore are not merged.
 //
 // Kozeny (1927), Carman (1937): k = e^3/(c S^2 (1 + e)), S the surface of the grains over their volume, c = 5. Spheres
-// of one diameter d: d^2 n^3/(180 (1 - n)^2). Overlaps are not subtracted. Discs: of long rods; contacts close the
-// pores of a plane, so that k is that of flow along the rods, if of anything.
+// of one diameter d: d^2 n^3/(180 (1 - n)^2). Overlaps are not subtracted. Discs count as long rods; contacts close the
+// pores of a plane, so k is at best that of flow along the rods.
 #pragma once
 
 #include "tools/voids/power_cells.hpp"
@@ -14,11 +14,11 @@
 namespace rvelab::voids {
 
 struct Pore {
-  Vector3 centre;     ///< m, cell frame; not brought back into the cell
+  Vector3 centre;     ///< m, cell frame; not wrapped into the cell
   double radius = 0;  ///< m, > 0
 };
 
-/// Each once per cell. In any order that depends on the input alone.
+/// Each once per cell. The order depends only on the input.
 struct Pores {
   std::vector<Pore> bodies, throats;
 };
@@ -29,7 +29,7 @@ Pores pores(const PeriodicCell& cell, const std::vector<Ball>& balls, const Powe
 /// False if there is none.
 bool touching_ball(const std::vector<Ball>& balls, Pore& found);
 
-/// (V_i - v_i)/v_i of each cell; -1 where a grain has none.
+/// (V_i - v_i)/v_i of each cell; -1 for a grain without a cell.
 std::vector<double> local_void_ratios(const PeriodicCell& cell, const std::vector<Ball>& balls,
                                       const PowerCells& cells);
 

@@ -1,10 +1,10 @@
 // Power (Laguerre) cells of the grains of a periodic cell, from the regular triangulation of their centres with the
-// weights r^2: a point belongs to the grain i for which |x - x_i|^2 - r_i^2 is least. Two grains that touch are parted
-// by the plane through their point of contact (Aurenhammer 1987).
+// weights r^2: a point belongs to the grain i with the least |x - x_i|^2 - r_i^2. The plane through the contact point
+// of two touching grains separates their cells (Aurenhammer 1987).
 //
-// CGAL's own periodic triangulations take cuboids with equal edges only; the lattice here is any upper triangular one.
-// So the grains are repeated by lattice vectors up to a margin around them, and the margin grows until no grain beyond
-// it can reach a simplex at a grain of the cell. Then these are the simplices of the endless periodic triangulation.
+// CGAL's periodic triangulations support only cubes; the lattice here is any upper triangular one. So the grains are
+// repeated by lattice vectors up to a margin around them, and the margin grows until no grain beyond it can affect a
+// simplex at a grain of the cell. These are then the simplices of the infinite periodic triangulation.
 #pragma once
 
 #include <array>
@@ -35,15 +35,15 @@ using Simplex = std::vector<Corner>;
 Simplex canonical(Simplex corners);
 
 struct PowerCells {
-  std::vector<double> volume;      ///< of each ball's cell, m^3 (2D: of the slab); 0: none, others cover it
-  std::vector<Simplex> simplices;  ///< canonical, each once; in any order that depends on the input alone
-  double margin = 0;               ///< m, that sufficed
+  std::vector<double> volume;      ///< of each ball's cell, m^3 (2D: of the slab); 0: no cell, covered by others
+  std::vector<Simplex> simplices;  ///< canonical, each once; the order depends only on the input
+  double margin = 0;               ///< m, the sufficient one
 };
 
 /// Throws Error without a ball.
 PowerCells power_cells(const PeriodicCell& cell, const std::vector<Ball>& balls);
 
-// What the files of the plane and of space share.
+// Common parts of plane and space.
 
 /// Balls and their copies within a box around the balls, larger by `margin`.
 struct Copies {
@@ -54,13 +54,13 @@ struct Copies {
 };
 Copies copies_within(const PeriodicCell& cell, const std::vector<Ball>& balls, double margin);
 
-/// How far a ball about the orthocentre that a missing copy might reach stands out of the box, m; <= 0: not.
+/// Distance by which a ball about the orthocentre that a missing copy might reach exceeds the box, m; <= 0: inside.
 double beyond(const Copies& copies, int dimension, const Vector3& orthocentre, const Ball& corner);
 
-/// The point of equal power to all corners. Exact arithmetic where the simplex is flat. Cell frame, m.
+/// The point of equal power to all corners, by exact arithmetic if the simplex is flat. Cell frame, m.
 Vector3 orthocentre_of(const std::vector<Ball>& corners);
 
-/// One attempt: cells and simplices at the balls of the cell; `lacking`: what the margin lacks, m.
+/// One attempt: cells and simplices at the balls of the cell; `lacking`: missing margin, m.
 struct Attempt {
   PowerCells cells;
   double lacking = 0;

@@ -20,7 +20,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Vertices =
     CGAL::Triangulation_vertex_base_with_info_3<std::size_t, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
-/// Each cell keeps its orthocentre, once it was asked for.
+/// Each cell stores its orthocentre at the first request.
 using Cells = CGAL::Triangulation_cell_base_with_info_3<std::optional<Vector3>, Kernel,
                                                         CGAL::Regular_triangulation_cell_base_3<Kernel>>;
 using Structure = CGAL::Triangulation_data_structure_3<Vertices, Cells>;
@@ -47,7 +47,7 @@ Vector3 orthocentre(const Copies& copies, Triangulation::Cell_handle cell) {
 }
 
 /// Volume between the centre of a ball and the face that it shares with `other`, whose corners, the orthocentres around
-/// their edge, are seen from the ball's centre; negative where the centre lies beyond the face.
+/// their edge, are relative to the ball's centre; negative if the centre lies beyond the face.
 double cone(const std::vector<Vector3>& face, const Vector3& towards_other) {
   Vector3 area = Vector3::Zero();
   double volume = 0;

@@ -15,7 +15,7 @@ void expect_ok(std::int32_t status) {
   throw Error(rvelab_last_error());
 }
 
-/// One RVE, in a pool of its own.
+/// One RVE in a separate pool.
 class Opened {
  public:
   explicit Opened(const std::string& file) {

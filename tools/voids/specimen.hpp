@@ -17,7 +17,7 @@ struct PackedGrains {
   std::vector<Ball> balls;  ///< cell frame
 };
 
-/// InputError: no such file, or grains that are no discs or spheres; Error: anything else.
+/// InputError: no such file, or grains other than discs or spheres; Error: any other failure.
 PackedGrains read_grains(const std::string& file);
 
 }  // namespace rvelab::voids

@@ -12,8 +12,8 @@ dH     (3, 3), dH[i, j] = d(du_i)/dx_j over the step, laboratory frame, finite (
 sigma  (3, 3), Pa, laboratory frame, Cauchy, tension positive. Batches have a first axis of length n. SI units.
 dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-components of dH are zero.
 
-Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else in or beside this package, else found by the loader. The meaning
-of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
+Needs numpy and librvelab.so.1: from RVELAB_LIBRARY, in or beside this package, or found by the loader, in this order. The
+meaning of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
 interpreter's lock meanwhile."""
 import sys as _sys
 

@@ -22,7 +22,7 @@ _Source = Union[str, "os.PathLike[str]", Records, Rve]
 class Picture:
     """A figure that a script drew. A notebook shows it; save() keeps it.
 
-    path: of the file; without `output` it lives as long as this object and its copies. text: what the script printed."""
+    path: of the file; without `output` it exists as long as this object and its copies. text: output of the script."""
 
     def __init__(self, path: Path, text: str, kept: Folder | None = None) -> None:
         self.path, self.text, self._kept = path, text, kept
@@ -53,16 +53,16 @@ class Picture:
 def _scripts() -> Path:
     here = Path(__file__).resolve().parent
     # In the wheel; in a checkout; PREFIX/share of an installed module in PREFIX/lib/python3/dist-packages/rvelab.
-    places = here / "native/share/rvelab/plot", here.parents[1] / "plot", here.parents[3] / "share/rvelab/plot"
-    found = next((place for place in places if (place / "records.py").exists()), None)
+    folders = here / "native/share/rvelab/plot", here.parents[1] / "plot", here.parents[3] / "share/rvelab/plot"
+    found = next((folder for folder in folders if (folder / "records.py").exists()), None)
     if found is None:
-        raise FileNotFoundError(f"the scripts of the figures were not found; tried {', '.join(map(str, places))}; "
-                                "install rvelab anew")
+        raise FileNotFoundError(f"the scripts of the figures were not found; tried {', '.join(map(str, folders))}; "
+                                "install rvelab again")
     return found
 
 
 def _python() -> str:
-    """Path of a Python for the scripts: RVELAB_PYTHON, else this one. A program that Python is embedded in is none."""
+    """Path of a Python for the scripts: RVELAB_PYTHON or this one. A program with embedded Python is not one."""
     python = os.environ.get("RVELAB_PYTHON") or sys.executable
     if not os.environ.get("RVELAB_PYTHON") and not re.search("python|pypy", os.path.basename(python or "")):
         raise RvelabError(f"figures are drawn by a Python of their own, and sys.executable is {python!r}, as where Python is "
@@ -99,7 +99,7 @@ def plot(figure: str, sources: _Source | Iterable[_Source], *, output: str | os.
     file with snapshots (output *.gif or *.mp4).
 
     output: *.png, *.pdf or *.svg. options: those of the script, plot("rose", rve, of="branches"), plot("mohr", folder,
-    colour="group"); truth values are flags. Needs h5py and matplotlib beside numpy."""
+    colour="group"); booleans are flags. Also needs h5py and matplotlib."""
     script = _scripts() / f"{figure}.py"
     names = sorted(path.stem for path in _scripts().glob("*.py") if path.stem not in _NO_FIGURES)
     if figure not in names:

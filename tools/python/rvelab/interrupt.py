@@ -1,5 +1,5 @@
-"""Ctrl-C in a long call of the library. Python notes a signal at once, but its handler runs when the call has returned: a
-thread beside reads what Python writes to its wake-up descriptor, and lets the call end."""
+"""Ctrl-C in a long call of the library. Python notes a signal at once, but runs its handler after the call: a second
+thread reads Python's wake-up descriptor and interrupts the call."""
 from __future__ import annotations
 
 import contextlib
@@ -16,11 +16,11 @@ from .library import call, functions, library, tell
 
 _lock = threading.Lock()
 _main = threading.main_thread().ident
-_working: c_void_p | None = None  # the pool that the main thread is at work in
+_working: c_void_p | None = None  # the pool in use by the main thread
 _told = False  # that pool was interrupted
 _ends: tuple[socket.socket, socket.socket] | None = None
-_theirs: int | None = None  # the descriptor of an event loop, which has its place again after the call
-_look_at = 0.0  # s, when to look again whose descriptor is there, which takes as long as a short call
+_theirs: int | None = None  # the descriptor of an event loop, restored after the call
+_look_at = 0.0  # s, time of the next check of the descriptor, which takes as long as a short call
 
 
 def _watch(received: socket.socket) -> None:

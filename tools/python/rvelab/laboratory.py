@@ -19,9 +19,9 @@ class Records(dict):
     """Records of a laboratory test by name, n rows each: strain (n), stress_Pa (n, 3, 3), void_ratio (n) and so on; the
     names, units and signs of record files (stress in tension positive).
 
-    summary: what else the program printed (peak_friction_angle_deg, flagged, stiffness_Pa, ...).
-    file: path of the record file. Without `output` it lives as long as these records and their copies; what pickle
-    carries to another process takes it along."""
+    summary: further output of the program (peak_friction_angle_deg, flagged, stiffness_Pa, ...).
+    file: path of the record file. Without `output` it exists as long as these records and their copies; pickle
+    sends it to another process."""
     summary: dict[str, Any]
     file: Path
     _kept: Folder | None = None  # that of the file, without `output`
@@ -75,11 +75,11 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
         output: _PathLike | None = None, progress: Callable[[PathPoint], None] | None = None, overwrite: bool = False,
         resume: bool = False, **more: Any) -> Records:
     """Runs a laboratory test: the name of an installed protocol ("biaxial") or a TOML file, on a specimen file, an Rve
-    (its committed state, which stays as it is) or the end of other Records.
+    (its committed state, which does not change) or the end of other Records.
 
     settings: keys of the protocol with dots, {"test.pressure_Pa": 50e3}, or tables in tables, {"test": {...}}.
-    output: record file to keep. progress: called with a PathPoint some times a second. overwrite: an existing output; resume:
-    go on with one that was stopped."""
+    output: record file to keep. progress: called with a PathPoint some times per second. overwrite: replaces an existing
+    output; resume: continues a stopped test."""
     kept = Folder()
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
@@ -94,7 +94,7 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
         records._kept = kept if output is None else None
         return records
 
-    records = ask(words, None if progress is None else lambda told: progress(PathPoint(**told)), made_of)
+    records = ask(words, None if progress is None else lambda point: progress(PathPoint(**point)), made_of)
     if progress is not None:
         progress(PathPoint(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
                         float(records["strain"][-1])))
@@ -104,7 +104,7 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
 def ensemble(protocol: _PathLike, specimens: Iterable[_PathLike | Rve], settings: Mapping[str, Any] | None = None, *,
              against: Iterable[_PathLike | Rve] = (), output: _PathLike | None = None, threads: int | None = None,
              overwrite: bool = False, resume: bool = False, **more: Any) -> dict[str, Any]:
-    """Runs a test on two or more specimens, one to a core, and returns what the program finds: summary, a list with mean,
+    """Runs a test on two or more specimens, one per core, and returns the results of the program: summary, a list with mean,
     standard_deviation, standard_error, low_95, high_95 and n of each measure, and tests. against: a second group; then
     differences holds those of the means.
 
@@ -122,7 +122,7 @@ def calibrate(protocol: _PathLike, specimens: _PathLike | Rve | Iterable[_PathLi
               pressures: Sequence[float] | None = None, settings: Mapping[str, Any] | None = None, *,
               output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
               **more: Any) -> dict[str, Any]:
-    """Runs a compression test of each specimen at every pressure, Pa, and returns what `rvelab calibrate` finds:
+    """Runs a compression test of each specimen at every pressure, Pa, and returns the results of `rvelab calibrate`:
     friction_angle_deg, bearing_capacity_Nq, of several specimens friction_angle_mean_deg and its standard error, and the
     lists per_pressure and per_specimen.
 
@@ -145,14 +145,14 @@ def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping
         same_specimens: bool = False, count: int | None = None, tests: int | None = None,
         settings: Mapping[str, Any] | None = None, output: _PathLike | None = None, threads: int | None = None,
         overwrite: bool = False, resume: bool = False) -> dict[str, Any]:
-    """Finds the parameters whose tests give what was measured, and returns what `rvelab fit` prints: parameters (key,
+    """Finds the parameters whose tests reproduce measurements, and returns the results of `rvelab fit`: parameters (key,
     mean, low_95, high_95, ...), targets, tests, posterior_sample. Without targets and curves a sweep.
 
     vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
     {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
     curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens.
-    same_specimens: the targets were measured on these very specimens. tests: their number. output: folder for fit.json
-    and the other files; plot("fit", output) draws it. resume: go on there."""
+    same_specimens: the targets were measured on these specimens. tests: their number. output: folder for fit.json
+    and the other files; plot("fit", output) draws it. resume: continues a fit there."""
     words = ["fit", protocol]
     for key, bounds in vary.items():
         words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]

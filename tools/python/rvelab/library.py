@@ -16,7 +16,7 @@ MEASURES = ("contact", "reynolds", "tangent", "error_estimate")
 
 
 class RvelabError(RuntimeError):
-    """A call failed, and the state is as before. status: number in rvelab.h (None: the program failed); batch: what
+    """A call failed, and the state is as before. status: number in rvelab.h (None: the program failed); batch: results of
     the other RVEs gave."""
 
     def __init__(self, text: str, status: int | None = None, batch: "Batch | None" = None) -> None:
@@ -25,11 +25,11 @@ class RvelabError(RuntimeError):
 
 
 class Discard(RvelabError):
-    """The increment cannot be made: try a smaller one (batch.dt_scale times it, after a trial)."""
+    """The increment failed: try a smaller one (batch.dt_scale times it, after a trial)."""
 
 
 class StaleToken(RvelabError):
-    """No trial of this RVE has that token any more."""
+    """No current trial of this RVE has that token."""
 
 
 class OutOfMemory(RvelabError, MemoryError):
@@ -37,9 +37,9 @@ class OutOfMemory(RvelabError, MemoryError):
 
 
 class RvelabWarning(UserWarning):
-    """The result is usable. Its text is the same each time, so that Python tells it once for a line; detail is the
-    library's text with its figures, status the number in rvelab.h. Where a filter of warnings makes it an error, the call
-    has been made all the same: result is what it gave."""
+    """The result is usable. The text is always the same, so that Python shows it once per line; detail is the
+    library's text with its figures, status the number in rvelab.h. If a filter of warnings makes it an error, the call has
+    still been made: result is its return value."""
     result: Any = None
 
     def __init__(self, text: str, status: int | None = None, detail: str = "") -> None:
@@ -89,7 +89,7 @@ class MixedStruct(ctypes.Structure):
 
 
 class Mixed:
-    """What a mixed target gave n RVEs: sigma and dH, what was applied (n, 3, 3), held_error, error_estimate (Pa), status,
+    """Results of a mixed target for n RVEs: sigma and the applied dH (n, 3, 3), held_error, error_estimate (Pa), status,
     tokens (n). Rows of an RVE that failed are NaN, its token is 0."""
 
     def __init__(self, n: int) -> None:
@@ -99,7 +99,7 @@ class Mixed:
 
 
 class Array(ctypes.Structure):
-    """What rvelab_list_arrays tells of an array: name, unit, meaning, what it is of, and its extent in this state."""
+    """An entry of rvelab_list_arrays: name, unit, meaning, owner, and its extent in this state."""
     _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("name", c_char_p), ("unit", c_char_p),
                 ("meaning", c_char_p), ("of", c_int32), ("type", c_int32), ("rows", c_int64), ("columns", c_int64)]
 
@@ -110,7 +110,7 @@ class Array(ctypes.Structure):
 
 
 class Batch:
-    """What a trial of n RVEs gave: sigma (n, 3, 3), status (n), dt_scale (n), tokens (n), and where asked for contact
+    """Results of a trial of n RVEs: sigma (n, 3, 3), status (n), dt_scale (n), tokens (n), and on request contact
     and reynolds (n, 3, 3), tangent (n, 6, 6; xx yy zz yz xz xy, engineering shear) and error_estimate (n), all in Pa.
     Rows of an RVE that failed are NaN, its token is 0. want: a name among MEASURES, or several."""
 
@@ -135,7 +135,7 @@ class Batch:
 
     def expect_fits(self, n: int, want: str | Iterable[str]) -> None:
         """ValueError unless the library can write a trial of n RVEs into these arrays."""
-        wanted, places = Batch._names(want), []  # first byte, the one after the last, name
+        wanted, ranges = Batch._names(want), []  # first byte, the one after the last, name
         for name, (shape, kind) in Batch._arrays(n).items():
             array = getattr(self, name, None)
             if array is None and name in MEASURES:
@@ -152,9 +152,9 @@ class Batch:
                     if holds)
                 raise ValueError(f"out.{name} is {found}{', ' + order if order else ''}; allowed: a writeable array of "
                                  f"{np.dtype(kind)} and shape {shape}, contiguous in order C, as Batch({n}, want) makes it")
-            places.append((array.ctypes.data, array.ctypes.data + array.nbytes, name))
-        places.sort()
-        for (_, end, first), (begin, _, second) in zip(places, places[1:]):
+            ranges.append((array.ctypes.data, array.ctypes.data + array.nbytes, name))
+        ranges.sort()
+        for (_, end, first), (begin, _, second) in zip(ranges, ranges[1:]):
             if begin < end:
                 raise ValueError(f"out.{first} and out.{second} share memory; give each an array of its own")
 
@@ -164,18 +164,18 @@ def load() -> ctypes.CDLL:
     # In the wheel; beside the module; PREFIX/lib of an installed one, PREFIX/lib/python3/dist-packages/rvelab; the build
     # of a checkout.
     folders = here / "native/lib", here, here.parent, here.parents[2], here.parents[2] / "build/release/lib"
-    places = [folder / name for folder in folders]
-    place = os.environ.get("RVELAB_LIBRARY") or str(next((file for file in places if file.exists()), name))
+    paths = [folder / name for folder in folders]
+    path = os.environ.get("RVELAB_LIBRARY") or str(next((file for file in paths if file.exists()), name))
     try:
-        library = ctypes.CDLL(place)
+        library = ctypes.CDLL(path)
     except OSError as error:
-        raise ImportError(f"{place}: {error}; let RVELAB_LIBRARY name {name}, or put it beside {__file__}") from None
+        raise ImportError(f"{path}: {error}; let RVELAB_LIBRARY name {name}, or put it beside {__file__}") from None
     for name_of_call in ("rvelab_version", "rvelab_status_name", "rvelab_last_error"):
         getattr(library, name_of_call).restype = c_char_p
     library.rvelab_capabilities.restype = c_int64
     version = library.rvelab_abi_version()
     if version >> 16 != 1 or version & 65535 < 4:
-        raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.4 and later 1.x: let "
+        raise ImportError(f"{path} has ABI {version >> 16}.{version & 65535}; this module is for 1.4 and later 1.x: let "
                           f"RVELAB_LIBRARY name a newer {name}")
     return library
 
@@ -196,8 +196,8 @@ def _level_of_caller() -> int:
 
 
 def call(name: str, *arguments: Any, batch: Batch | Mixed | None = None, result: np.ndarray | None = None) -> None:
-    """A call by its name without rvelab_. A warning is told as one, an error is raised with the library's text. batch,
-    result: what it writes to, for error.batch and warning.result."""
+    """A call by its name without rvelab_. Issues its warning, or raises its error with the library's text. batch,
+    result: its outputs, for error.batch and warning.result."""
     status = functions[name](*arguments)
     if status != 0:
         tell(status, name, arguments[0], result if batch is None else batch, batch)
@@ -215,7 +215,7 @@ def tell(status: int, name: str, pool: Any, result: Any, batch: Any) -> None:
 
 
 def warn(message: RvelabWarning, level: int, result: Any, done: str) -> None:
-    """A warning that a filter makes an error says what was done, and holds what the call gave."""
+    """If a filter makes the warning an error, adds what was done and the result of the call."""
     try:
         warnings.warn(message, stacklevel=level + 1)
     except RvelabWarning as raised:
@@ -225,7 +225,7 @@ def warn(message: RvelabWarning, level: int, result: Any, done: str) -> None:
 
 
 def numbers_of(given: ArrayLike, what: str = "ids") -> np.ndarray:
-    """Integers as int64, without a copy where they are; floats only where they are whole."""
+    """Integers as int64, without a copy if they already are; floats only if they are whole."""
     if given is None:
         raise ValueError(f"{what} is None; give the {what} that the pool returned")
     array = np.atleast_1d(np.asarray(given))

@@ -1,4 +1,4 @@
-"""Many RVEs that are worked on together: Pool, over the C interface."""
+"""A pool of many RVEs: Pool, over the C interface."""
 from __future__ import annotations
 
 import json
@@ -73,10 +73,10 @@ def parameters_text(settings: Mapping[str, Any]) -> str:
 
 
 class Pool:
-    """RVEs that are worked on together. Options are those of rvelab_pool_def: workers (0: one per core),
+    """Many RVEs with common threads. Options are those of rvelab_pool_def: workers (0: one per core),
     trial_memory (0 keep, 1 recompute), tolerance_rel, tolerance_abs, max_substeps, damping, min_height (m);
-    0: what the specimen says. Ids and tokens begin with numbers drawn at random, so that those of other pools and
-    processes are refused; counted_ids: they count from the lowest, and snapshots and pool files of the same calls have
+    0: the value of the specimen. Ids and tokens begin with random numbers, so that those of other pools and
+    processes are errors; counted_ids: they count from the lowest, and snapshots and pool files of the same calls have
     the same bytes."""
 
     def __init__(self, counted_ids: bool = False, **options: float) -> None:
@@ -119,11 +119,11 @@ class Pool:
         return made.value
 
     def release_template(self, template: int) -> None:
-        """Ends a template; the RVEs that were made from it stay."""
+        """Ends a template; RVEs made from it stay."""
         call("template_release", self._pool, template)
 
     def spawn(self, template: int, n: int = 1) -> np.ndarray:
-        """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
+        """n RVEs in the state of the template: their ids, (n) of int64, each also exact in a double."""
         ids = np.zeros(max(n, 0), np.int64)
         long_call("spawn", self._pool, template, n, ids.ctypes.data)
         return ids
@@ -156,8 +156,8 @@ class Pool:
     def trial(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, tokens: ArrayLike | None = None,
               want: str | Iterable[str] = (), out: Batch | None = None) -> Batch:
         """One trial of each of n RVEs, dH (n, 3, 3), from its committed state or from the one that its token names.
-        commit() makes trials the states. want: a name among MEASURES, or several. out: a Batch of n whose arrays are used
-        again. Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
+        commit() accepts them. want: a name among MEASURES, or several. out: a Batch of n whose arrays are used
+        again. Raises if one fails; error.batch then has the results of the others. int64 and float64 arrays are not copied."""
         ids, batch = numbers_of(rves), BatchStruct()
         gradients = gradients_of(dH, (len(ids), 3, 3))
         want = want if isinstance(want, str) else tuple(want)  # once, where it is a generator
@@ -182,7 +182,7 @@ class Pool:
         return found
 
     def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: str | Iterable[str] = ()) -> Batch:
-        """Trial and commit of n RVEs. Those that could be made are committed, whether others failed or not."""
+        """Trial and commit of n RVEs. Successful ones are committed, even if others fail."""
         try:
             found = self.trial(rves, dH, dt, want=want)
         except RvelabError as error:
@@ -201,7 +201,7 @@ class Pool:
                     tolerance: float = 0) -> Mixed:
         """Trial and commit of n RVEs to rows A : d eps + B : d sigma = c, 3 in 2D, 6 in 3D: strain A and stress B
         (n, rows, 3, 3), value c, scale and missed (n, rows), spin (n, 3, 3); see rvelab_mixed in rvelab.h. Raises if one
-        fails; error.batch then holds what the others gave."""
+        fails; error.batch then has the results of the others."""
         ids, mixed = numbers_of(rves), MixedStruct()
         n, rows = len(ids), np.shape(value)[-1]
         given = {name: gradients_of(array, shape, name) for name, array, shape in (
@@ -219,13 +219,13 @@ class Pool:
         return found
 
     def relax(self, rve: int, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
-        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small; warns if it is not."""
+        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is reached; warns if it is not."""
         sigma = np.empty((3, 3))
         long_call("relax", self._pool, id_of(rve), unbalanced, max_substeps, sigma.ctypes.data, result=sigma)
         return sigma
 
     def commit(self, rves: ArrayLike | None = None) -> None:
-        """Pending trials become the states; None: all that are pending."""
+        """Pending trials become the states; None: all pending ones."""
         self._settle("commit", rves)
 
     def revert(self, rves: ArrayLike | None = None) -> None:
@@ -281,8 +281,8 @@ class Pool:
     def run_stages(self, rves: ArrayLike, stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> np.ndarray:
         """Runs stages of a test on RVEs, by the keys of protocols: {"kind": "cement", "young_modulus_Pa": 50e6, ...}, a
         list of such, or a text of TOML. Their ends are the new states, whose stresses are returned, (n, 3, 3) Pa; a
-        pending trial is reverted. If one of them fails, RvelabError says why: that one is as before, the others went
-        on."""
+        pending trial is reverted. If one of them fails, RvelabError gives the reason: it is as before, the others have
+        their new states."""
         ids = numbers_of(rves)
         sigma = np.full((len(ids), 3, 3), np.nan)
         long_call("run_stages", self._pool, len(ids), ids.ctypes.data, stages_text(stages).encode(), sigma.ctypes.data, None,
@@ -290,7 +290,7 @@ class Pool:
         return sigma
 
     def cost(self, rves: ArrayLike) -> np.ndarray:
-        """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""
+        """Grains times sub-steps made for each RVE in this pool, (n), including reverted trials."""
         ids = numbers_of(rves)
         made = np.zeros(len(ids), np.int64)
         call("cost", self._pool, len(ids), ids.ctypes.data, made.ctypes.data)
@@ -314,6 +314,6 @@ class Pool:
         long_call("pool_write", self._pool, os.fsencode(path))
 
     def read(self, path: str | os.PathLike[str]) -> np.ndarray:
-        """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
+        """The RVEs of a pool file, with their ids and tokens, into this pool, which must have none. Their ids."""
         long_call("pool_read", self._pool, os.fsencode(path))
         return self.ids()

@@ -1,4 +1,4 @@
-"""The program rvelab: where it is, and calls of it that raise."""
+"""The program rvelab: its path, and calls that raise."""
 from __future__ import annotations
 
 import json
@@ -20,18 +20,18 @@ def program() -> str:
     named = os.environ.get("RVELAB_PROGRAM")
     if named:
         return named
-    places = []
+    candidates = []
     if os.sep in library._name:
         folder = Path(library._name).resolve().parent
-        places = [folder / "rvelab", folder.parent / "bin/rvelab", folder.parent.parent / "bin/rvelab"]
-    found = next((str(file) for file in places if file.is_file()), None) or shutil.which("rvelab")
+        candidates = [folder / "rvelab", folder.parent / "bin/rvelab", folder.parent.parent / "bin/rvelab"]
+    found = next((str(file) for file in candidates if file.is_file()), None) or shutil.which("rvelab")
     if found is None:
         raise FileNotFoundError("the program rvelab was not found: let RVELAB_PROGRAM name it, or add it to PATH")
     return found
 
 
 class Folder:
-    """A folder that lives as long as this object."""
+    """A temporary folder that exists as long as this object."""
 
     def __init__(self) -> None:
         self.name = tempfile.mkdtemp(prefix="rvelab-")
@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def main_mpm() -> None:
-    """The command `rvelab-mpm` of the wheel: becomes the program beside rvelab."""
+    """The command `rvelab-mpm` of the wheel: becomes that program."""
     beside = str(Path(program()).resolve().parent / "rvelab-mpm")
     os.execv(beside, [beside, *sys.argv[1:]])
 
@@ -90,7 +90,7 @@ def plain(value: Any) -> Any:
 
 def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, Any]], None] | None = None,
         made_of: Callable[[Any], Any] = lambda printed: printed) -> Any:
-    """Runs the program with --json and returns what it printed, as made_of makes it. Its warnings become RvelabWarning,
+    """Runs the program with --json and returns its output, converted by made_of. Its warnings become RvelabWarning,
     its error RvelabError. progress: called with each of its lines of progress."""
     command = [program(), *map(os.fspath, words), "--json", *(["--progress"] if progress is not None else [])]
     printed, told = [], []
@@ -104,7 +104,7 @@ def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, A
                 else:
                     told.append(line)
         except BaseException:
-            running.terminate()  # it keeps what it has recorded
+            running.terminate()  # it keeps its records
             raise
         finally:
             reader.join()

@@ -26,10 +26,10 @@ class Contacts(NamedTuple):
 
 
 class Rve:
-    """One RVE, in a pool of its own or in one given. source: a specimen file, a record file (its end state), or the bytes
-    of snapshot(). The fields of Info are its attributes: rve.void_ratio, rve.p, rve.fabric; dir(rve) names all. It lives
-    until close(), the end of its `with`, or the last reference to it: of a pool that was given nothing else ends. pickle
-    and copy go by snapshot(): for the same build of rvelab, into a pool of its own."""
+    """One RVE, in a separate or a given pool. source: a specimen file, a record file (its end state), or the bytes
+    of snapshot(). The fields of Info are its attributes: rve.void_ratio, rve.p, rve.fabric; dir(rve) names all. It exists
+    until close(), the end of its `with`, or the last reference to it; a given pool remains. pickle and copy use
+    snapshot(): for the same build of rvelab, into a separate pool."""
 
     def __init__(self, source: str | os.PathLike[str] | bytes, pool: Pool | None = None, **options: float) -> None:
         if pool is not None and options:
@@ -44,7 +44,7 @@ class Rve:
             self.pool.release_template(template)
 
     def close(self) -> None:
-        """Ends the RVE, and its pool if that is its own. A second time it does nothing; later calls raise."""
+        """Ends the RVE, and its pool unless that was given. A second time it does nothing; later calls raise."""
         if self.id and self.pool._pool and not self._owns_pool:
             self.pool.release(self.id)
         self.id = 0
@@ -70,9 +70,9 @@ class Rve:
 
     def apply_held(self, dH: ArrayLike, held: dict[str, float], dt: float = 0, tolerance: float = 0) -> Mixed:
         """An increment in which stresses come to given values, {"xx": -20e3} (Pa, tension positive), and all other
-        components, the spin included, follow dH (3, 3): a drained test holds its lateral stresses so. sigma[0] is the
-        stress, dH[0] what was applied. tolerance: relative to each stress; 0: 0.005. What a step of the same `held` just
-        before has missed is made good."""
+        components, the spin included, follow dH (3, 3): as the lateral stresses of a drained test. sigma[0] is the
+        stress, dH[0] the applied increment. tolerance: relative to each stress; 0: 0.005. The remaining error of the step
+        before with the same `held` is corrected."""
         dH, stress, d = np.asarray(dH, np.float64), self.stress, self.dimension
         names = ["xx", "yy", "xy"] if d == 2 else ["xx", "yy", "zz", "yz", "xz", "xy"]
         if not set(held) <= set(names):
@@ -96,12 +96,12 @@ class Rve:
         return found
 
     def relax(self, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
-        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small."""
+        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is reached."""
         self._held = None
         return self.pool.relax(self.id, unbalanced, max_substeps)
 
     def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: str | Iterable[str] = ()) -> Batch:
-        """A Batch of one: what dH would give. It pends until commit(), revert() or the next call."""
+        """A Batch of one: the result of dH. The trial is pending until commit(), revert() or the next call."""
         return self.pool.trial(self.id, np.asarray(dH, np.float64)[np.newaxis], dt, token, want)
 
     def commit(self) -> None:
@@ -114,7 +114,7 @@ class Rve:
         self.pool.revert(self.id)
 
     def tangent(self) -> np.ndarray:
-        """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. Made by a trial
+        """Elastic tangent (6, 6) of the present contacts, Pa: xx yy zz yz xz xy, engineering shear. Made by a trial
         of dH = 0, which replaces a pending one and is discarded."""
         try:
             found = self.trial(np.zeros((3, 3)), want="tangent")
@@ -126,11 +126,11 @@ class Rve:
         return found.tangent[0]
 
     def snapshot(self) -> bytes:
-        """The committed state with its tokens, bitwise, for the same build of rvelab; Rve(bytes) has it again."""
+        """The committed state with its tokens, bitwise, for the same build of rvelab; Rve(bytes) restores it."""
         return self.pool.snapshot(self.id)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the committed state as a file that everything reads which reads a specimen: run, plot, export, Rve."""
+        """Writes the committed state as a specimen file, for run, plot, export, Rve."""
         with Pool(workers=1) as alone:  # a pool file of one RVE
             alone.spawn(alone.template(self.snapshot()))
             alone.write(path)
@@ -181,8 +181,8 @@ class Rve:
         self.pool.set_parameters(self.id, settings)
 
     def run_stages(self, stages: str | Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> np.ndarray:
-        """Runs stages of a test by their keys, {"kind": "cement", ...}, and returns the stress (Pool.run_stages): bonds
-        and water are made, cement dissolves, a pressure is reached. rvelab.run also gives records."""
+        """Runs stages of a test by their keys, {"kind": "cement", ...}, and returns the stress (Pool.run_stages): for example
+        to make bonds or water, dissolve cement, apply a pressure. rvelab.run also gives records."""
         return self.pool.run_stages([self.id], stages)[0]
 
     def __getattr__(self, name: str) -> Any:

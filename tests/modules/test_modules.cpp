@@ -1,4 +1,4 @@
-// The rooms are used in the order that rvelab/README.md and tools/mpm/README.md print: every include is held against
+// The modules are used in the order that rvelab/README.md and tools/mpm/README.md print: every include is held against
 // the tables there.
 #include <algorithm>
 #include <filesystem>
@@ -20,17 +20,17 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
-/// First cells of the table below "## Rooms" that name code, in their order: files and folders from the root on.
+/// First cells of the table below "## Modules" that name code, in their order: files and folders from the root on.
 std::vector<std::string> order_in(const std::string& readme) {
-  std::vector<std::string> rooms;
+  std::vector<std::string> modules;
   std::istringstream lines(readme);
   bool below = false;
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("## ")) below = line == "## Rooms";
+    if (line.starts_with("## ")) below = line == "## Modules";
     const bool row = line.starts_with("| rvelab/") || line.starts_with("| tools/mpm/");
-    if (below && row) rooms.push_back(line.substr(2, line.find(" |", 2) - 2));
+    if (below && row) modules.push_back(line.substr(2, line.find(" |", 2) - 2));
   }
-  return rooms;
+  return modules;
 }
 
 /// Row that a file belongs to: the longest name that is the file or a folder above it; the number of rows: none.
@@ -63,11 +63,11 @@ std::vector<std::string> code_under(const std::string& folder) {
   return files;
 }
 
-/// Of the two programs whose rooms are listed.
-const std::vector<std::string> in_rooms = {"rvelab", "tools/mpm"};
-std::vector<std::string> code_in_rooms() {
+/// Of the two programs whose modules are listed.
+const std::vector<std::string> in_modules = {"rvelab", "tools/mpm"};
+std::vector<std::string> code_in_modules() {
   std::vector<std::string> files;
-  for (const std::string& folder : in_rooms) {
+  for (const std::string& folder : in_modules) {
     const auto more = code_under(folder);
     files.insert(files.end(), more.begin(), more.end());
   }
@@ -90,9 +90,9 @@ std::vector<std::string> includes_of(const std::string& file, char open = '"') {
 
 }  // namespace
 
-TEST_CASE("an include against the order is seen, in a folder within a room too") {
+TEST_CASE("an include against the order is seen, in a folder within a module too") {
   const auto order = order_in(
-      "# p\n| rvelab/before | |\n## Rooms\n\n| folder | what |\n| --- | --- |\n| rvelab/error.hpp | a |\n"
+      "# p\n| rvelab/before | |\n## Modules\n\n| folder | what |\n| --- | --- |\n| rvelab/error.hpp | a |\n"
       "| rvelab/cell | b |\n| rvelab/solver/kernels | c |\n| rvelab/solver | d |\n| tests | e |\n## Limits\n| rvelab/x "
       "| |\n");
   REQUIRE(order ==
@@ -104,22 +104,22 @@ TEST_CASE("an include against the order is seen, in a folder within a room too")
   CHECK(against_order(order, "rvelab/solver/kernels/discs.hpp", "rvelab/solver/rve.hpp"));
   CHECK(against_order(order, "rvelab/error.hpp", "rvelab/cell/cell.hpp"));
   CHECK(against_order(order, "rvelab/cell/cell.hpp", "rvelab/solver/rve.hpp"));
-  CHECK(against_order(order, "rvelab/solver/rve.hpp", "rvelab/cellar/wine.hpp"));  // of no room
+  CHECK(against_order(order, "rvelab/solver/rve.hpp", "rvelab/cellar/wine.hpp"));  // of no module
 }
 
-TEST_CASE("each room includes only those above it in the list of its README") {
-  for (const std::string& folder : in_rooms) {
+TEST_CASE("each module includes only those above it in the list of its README") {
+  for (const std::string& folder : in_modules) {
     CAPTURE(folder);
     const auto order = order_in(text_of(root / folder / "README.md"));
     REQUIRE(order.size() > 10);
     CHECK(std::set(order.begin(), order.end()).size() == order.size());
-    for (const std::string& room : order) {
-      CAPTURE(room);
-      CHECK(std::filesystem::exists(root / room));
+    for (const std::string& module : order) {
+      CAPTURE(module);
+      CHECK(std::filesystem::exists(root / module));
     }
     std::size_t includes = 0;
     for (const std::string& file : code_under(folder)) {
-      if (row_of(order, file) == order.size()) FAIL_CHECK(file << " is in no room of " << folder << "/README.md");
+      if (row_of(order, file) == order.size()) FAIL_CHECK(file << " is in no module of " << folder << "/README.md");
       for (const std::string& included : includes_of(file)) {
         ++includes;
         if (against_order(order, file, included))
@@ -138,13 +138,13 @@ TEST_CASE("each room includes only those above it in the list of its README") {
 TEST_CASE("no header includes itself by way of others") {
   std::map<std::string, bool> done;  // false: under way
   const auto visit = [&](const auto& self, const std::string& file, const std::string& from) -> void {
-    const auto [place, first] = done.emplace(file, false);
-    if (!first && !place->second) FAIL_CHECK(from << " includes " << file << ", which leads back to it");
+    const auto [entry, first] = done.emplace(file, false);
+    if (!first && !entry->second) FAIL_CHECK(from << " includes " << file << ", which leads back to it");
     if (!first) return;
     for (const std::string& included : includes_of(file)) self(self, included, file);
     done[file] = true;
   };
-  for (const std::string& file : code_in_rooms()) visit(visit, file, "");
+  for (const std::string& file : code_in_modules()) visit(visit, file, "");
   CHECK(done.size() > 200);
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("no two types of one namespace have one name") {
   // Two would be one type to the linker, with the layout of either.
   std::map<std::string, std::string> found;
   std::size_t types = 0;
-  for (const std::string& file : code_in_rooms()) {
+  for (const std::string& file : code_in_modules()) {
     std::vector<std::string> spaces;  // of the blocks that begin at the first letter of a line, and are open
     std::istringstream lines(text_of(root / file));
     for (std::string line; std::getline(lines, line);) {
@@ -172,8 +172,8 @@ TEST_CASE("no two types of one namespace have one name") {
       std::string whole;
       for (const std::string& space : spaces) whole += space + "::";
       ++types;
-      const auto [place, first] = found.emplace(whole + name, file);
-      if (!first) FAIL_CHECK(whole << name << " is declared in " << place->second << " and in " << file);
+      const auto [entry, first] = found.emplace(whole + name, file);
+      if (!first) FAIL_CHECK(whole << name << " is declared in " << entry->second << " and in " << file);
     }
   }
   CHECK(types > 0);

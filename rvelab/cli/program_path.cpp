@@ -1,4 +1,4 @@
-#include "rvelab/cli/program_place.hpp"
+#include "rvelab/cli/program_path.hpp"
 
 #include <sys/auxv.h>
 
@@ -23,8 +23,8 @@ fs::path shared_folder(const fs::path& name) {
   const fs::path program = program_file();
   if (program.empty())
     throw Error(
-        "/proc is not mounted, and the system does not tell which file this program is, so that what was installed "
-        "with it (../share/rvelab) cannot be found; mount /proc, or give files instead of names");
+        "/proc is not mounted and the path of this program is unknown, so the files installed with it "
+        "(../share/rvelab) cannot be found; mount /proc, or give files instead of names");
   return program.parent_path().parent_path() / "share/rvelab" / name;
 }
 
