@@ -31,32 +31,29 @@ struct Turn {
   Eigen::Vector3d v = Eigen::Vector3d::Zero();
 };
 
+static inline Triple<double> triple_of(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+static inline LaneTurn<double> lane_of(const Turn& q) { return {q.w, triple_of(q.v)}; }
+static inline Turn turn_from(const LaneTurn<double>& q) { return {q.w, {q.v.x, q.v.y, q.v.z}}; }
+
 /// First b, then a.
-inline Turn after(const Turn& a, const Turn& b) {
-  return {a.w * b.w - a.v.dot(b.v), a.w * b.v + b.w * a.v + a.v.cross(b.v)};
-}
-inline Turn normalised(const Turn& q) {
-  const double scale = 1 / std::sqrt(q.w * q.w + q.v.squaredNorm());
-  return {scale * q.w, scale * q.v};
-}
+static inline Turn after(const Turn& a, const Turn& b) { return turn_from(after(lane_of(a), lane_of(b))); }
+static inline Turn normalised(const Turn& q) { return turn_from(normalised(lane_of(q))); }
 inline Turn inverse(const Turn& q) { return {q.w, -q.v}; }
 
 /// The rotation R with R a - a = t x (R a + a)/2 for any a: by 2 atan(|t|/2) about t.
-inline Turn cayley_turn(const Eigen::Vector3d& t) { return normalised(Turn{1, 0.5 * t}); }
+static inline Turn cayley_turn(const Eigen::Vector3d& t) { return normalised(Turn{1, 0.5 * t}); }
 /// The way back: t of a turn by less than pi.
 inline Eigen::Vector3d cayley_vector(const Turn& q) { return (2 / q.w) * q.v; }
 
 /// The principal axes as columns.
-inline Eigen::Matrix3d axes_of(const Turn& q) {
-  const double x = q.v[0], y = q.v[1], z = q.v[2], w = q.w;
+static inline Eigen::Matrix3d axes_of(const Turn& q) {
+  const LaneAxes<double> axes = axes_of(lane_of(q));
   Eigen::Matrix3d m;
-  m << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
-      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),   //
-      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  for (int k = 0; k < 3; ++k) m.row(k) << axes.row[k].x, axes.row[k].y, axes.row[k].z;
   return m;
 }
 /// Of a proper rotation.
-inline Turn turn_of(const Eigen::Matrix3d& rotation) {
+static inline Turn turn_of(const Eigen::Matrix3d& rotation) {
   const Eigen::Quaterniond q(rotation);
   return normalised(Turn{q.w(), q.vec()});
 }
@@ -65,7 +62,7 @@ inline Turn turn_of(const Eigen::Matrix3d& rotation) {
 /// Returns t wm, the Cayley vector of the turn (axes of the body).
 static inline Eigen::Vector3d rotate_freely(double t, const Eigen::Vector3d& moments, Eigen::Vector3d& momentum,
                                             Turn& q) {
-  Triple<double> of_lane = {momentum[0], momentum[1], momentum[2]};
+  Triple<double> of_lane = triple_of(momentum);
   const Triple<double> turned = rotate_freely<double>(t, {1 / moments[0], 1 / moments[1], 1 / moments[2]}, of_lane);
   momentum = {of_lane.x, of_lane.y, of_lane.z};
   q = normalised(after(q, cayley_turn({turned.x, turned.y, turned.z})));

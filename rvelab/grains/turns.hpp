@@ -1,4 +1,5 @@
-// Turns of rigid bodies over lanes (rigid_motion.hpp has the formulas): unit quaternions, principal axes, the free top.
+// Turns of rigid bodies over lanes, or of one: unit quaternions, principal axes, the free top (rigid_motion.hpp says
+// which rule).
 // Every operation is one of its lane alone, so that lanes of every width give the same bits.
 #pragma once
 

@@ -184,8 +184,8 @@ struct Beam {
     f.tangential = shear;
     f.moment = plus(bending, twist, m.n);
     if constexpr (Advance) {
-      store_triple(p.column + shear_force, at, f.tangential);
-      store_triple(p.column + bending_moment, at, bending);
+      store_vec(p.column + shear_force, at, f.tangential);
+      store_vec(p.column + bending_moment, at, bending);
       store_as(p.column[twisting_moment] + at, twist);
     }
     return f;

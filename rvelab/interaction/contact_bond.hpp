@@ -101,7 +101,7 @@ struct ContactBond {
     f.normal = normal_force<Advance, V>(p, at, m.length, dot(shear, shear), was);
     f.tangential = chosen(was == 0.0, shear, none);
     f.moment = none;
-    if constexpr (Advance) store_triple(p.column + shear_force, at, f.tangential);
+    if constexpr (Advance) store_vec(p.column + shear_force, at, f.tangential);
     return f;
   }
 };

@@ -195,8 +195,8 @@ struct SofteningBond {
     if constexpr (Advance) {
       const auto intact = left > zero;
       const Triple<V> none = {zero, zero, zero};
-      store_triple(p.column + shear_force, at, chosen(intact, shear, none));
-      store_triple(p.column + bending_moment, at, chosen(intact, bending, none));
+      store_vec(p.column + shear_force, at, chosen(intact, shear, none));
+      store_vec(p.column + bending_moment, at, chosen(intact, bending, none));
       store_as(p.column[twisting_moment] + at, intact ? twist : zero);
     }
     const auto pressed = (normal > zero) & (left > zero);

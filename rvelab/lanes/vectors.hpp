@@ -1,4 +1,4 @@
-// Vectors of three lane quantities, and what pair loops and contact laws do with them.
+// Vectors of lane quantities in the plane and in space, and what pair loops and contact laws do with them.
 #pragma once
 
 #include "rvelab/lanes/lanes.hpp"
@@ -22,48 +22,120 @@ inline __attribute__((always_inline)) V clamped(V v, V limit) {
   return (raised < limit) ? raised : limit;
 }
 
-/// Three columns of a vector quantity.
+/// D columns of a vector quantity, two or three. In the plane spins and moments are one column, V itself: sums,
+/// products and damping take both.
+template <class V, int D>
+struct Vec;
 template <class V>
-struct Triple {
+struct Vec<V, 2> {
+  V x, y;
+};
+template <class V>
+struct Vec<V, 3> {
   V x, y, z;
 };
 template <class V>
-inline __attribute__((always_inline)) V dot(const Triple<V>& a, const Triple<V>& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
+using Triple = Vec<V, 3>;
+
+template <class V>
+inline __attribute__((always_inline)) V dot(V a, V b) {
+  return a * b;
+}
+template <class V, int D>
+inline __attribute__((always_inline)) V dot(const Vec<V, D>& a, const Vec<V, D>& b) {
+  if constexpr (D == 2)
+    return a.x * b.x + a.y * b.y;
+  else
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
 }
 template <class V>
 inline __attribute__((always_inline)) Triple<V> cross(const Triple<V>& a, const Triple<V>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <class V>
-inline __attribute__((always_inline)) Triple<V> plus(const Triple<V>& a, V factor, const Triple<V>& b) {
-  return {a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
+template <class V, int D>
+inline __attribute__((always_inline)) Vec<V, D> operator+(const Vec<V, D>& a, const Vec<V, D>& b) {
+  if constexpr (D == 2)
+    return {a.x + b.x, a.y + b.y};
+  else
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-template <class V>
-inline __attribute__((always_inline)) Triple<V> minus(const Triple<V>& a, V factor, const Triple<V>& b) {
-  return {a.x - factor * b.x, a.y - factor * b.y, a.z - factor * b.z};
+template <class V, int D>
+inline __attribute__((always_inline)) Vec<V, D> operator-(const Vec<V, D>& a, const Vec<V, D>& b) {
+  if constexpr (D == 2)
+    return {a.x - b.x, a.y - b.y};
+  else
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <class V>
-inline __attribute__((always_inline)) Triple<V> times(V factor, const Triple<V>& b) {
-  return {factor * b.x, factor * b.y, factor * b.z};
+/// `factor`: one for all lanes or one for each.
+template <class Factor, class V>
+inline __attribute__((always_inline)) V times(Factor factor, V a) {
+  return factor * a;
+}
+template <class Factor, class V, int D>
+inline __attribute__((always_inline)) Vec<V, D> times(Factor factor, const Vec<V, D>& a) {
+  if constexpr (D == 2)
+    return {factor * a.x, factor * a.y};
+  else
+    return {factor * a.x, factor * a.y, factor * a.z};
+}
+template <class V, class Factor>
+inline __attribute__((always_inline)) V plus(V a, Factor factor, V b) {
+  return a + factor * b;
+}
+template <class V, int D, class Factor>
+inline __attribute__((always_inline)) Vec<V, D> plus(const Vec<V, D>& a, Factor factor, const Vec<V, D>& b) {
+  return a + times(factor, b);
+}
+template <class V, int D, class Factor>
+inline __attribute__((always_inline)) Vec<V, D> minus(const Vec<V, D>& a, Factor factor, const Vec<V, D>& b) {
+  return a - times(factor, b);
 }
 
 /// `a` in the lanes where `held`, else `b`.
-template <class Mask, class V>
-inline __attribute__((always_inline)) Triple<V> chosen(Mask held, const Triple<V>& a, const Triple<V>& b) {
-  return {held ? a.x : b.x, held ? a.y : b.y, held ? a.z : b.z};
+template <class Mask, class V, int D>
+inline __attribute__((always_inline)) Vec<V, D> chosen(Mask held, const Vec<V, D>& a, const Vec<V, D>& b) {
+  if constexpr (D == 2)
+    return {held ? a.x : b.x, held ? a.y : b.y};
+  else
+    return {held ? a.x : b.x, held ? a.y : b.y, held ? a.z : b.z};
 }
 
-/// Three columns of pair arrays.
-template <class V>
-inline __attribute__((always_inline)) Triple<V> load_triple(double* const* from, long at) {
-  return {load_as<V>(from[0] + at), load_as<V>(from[1] + at), load_as<V>(from[2] + at)};
+/// D columns of arrays.
+template <class V, int D = 3, class Number>
+inline __attribute__((always_inline)) Vec<V, D> load_vec(Number* const* from, long at) {
+  if constexpr (D == 2)
+    return {load_as<V>(from[0] + at), load_as<V>(from[1] + at)};
+  else
+    return {load_as<V>(from[0] + at), load_as<V>(from[1] + at), load_as<V>(from[2] + at)};
 }
-template <class V>
-inline __attribute__((always_inline)) void store_triple(double* const* to, long at, const Triple<V>& value) {
+template <class V, int D>
+inline __attribute__((always_inline)) void store_vec(double* const* to, long at, const Vec<V, D>& value) {
   store_as(to[0] + at, value.x);
   store_as(to[1] + at, value.y);
-  store_as(to[2] + at, value.z);
+  if constexpr (D == 3) store_as(to[2] + at, value.z);
+}
+
+/// The first D of some columns.
+template <int D, class V>
+inline __attribute__((always_inline)) Vec<V, D> first_of(const V* columns) {
+  if constexpr (D == 2)
+    return {columns[0], columns[1]};
+  else
+    return {columns[0], columns[1], columns[2]};
+}
+/// The first three of four doubles of rows that follow each other, `stride` apart; and back to such rows, with a
+/// fourth.
+template <int W>
+inline __attribute__((always_inline)) Triple<typename Lanes<W>::V> triple_of(const double* rows, long stride) {
+  typename Lanes<W>::V columns[4];
+  columns_of<W>(rows, stride, columns);
+  return first_of<3>(columns);
+}
+template <int W>
+inline __attribute__((always_inline)) void rows_of(const Triple<typename Lanes<W>::V>& v, typename Lanes<W>::V fourth,
+                                                   double* row, long stride) {
+  const typename Lanes<W>::V columns[4] = {v.x, v.y, v.z, fourth};
+  rows_of<W>(columns, row, stride);
 }
 
 /// A history vector in the tangent plane of the new normal, turned about n by the mean spin times dt (first order), and

@@ -92,8 +92,8 @@ void judge(double* column, const Vector3& branch, double ri, double rj, double t
   if (thickness > 0) {
     B::template in_plane<true, double>(one, 0, {length});
   } else {
-    Triple<double> turned[2] = {load_triple<double>(one.column + B::shear_force, 0), {0, 0, 0}};
-    if constexpr (requires { B::bending_moment; }) turned[1] = load_triple<double>(one.column + B::bending_moment, 0);
+    Triple<double> turned[2] = {load_vec<double>(one.column + B::shear_force, 0), {0, 0, 0}};
+    if constexpr (requires { B::bending_moment; }) turned[1] = load_vec<double>(one.column + B::bending_moment, 0);
     B::template in_space<true, double>(one, 0, {{branch[0] / length, branch[1] / length, branch[2] / length}, length},
                                        turned);
   }

@@ -230,10 +230,10 @@ inline ContactsOf<double> searched_contact(const OverlapPair& pair) {
 }
 
 /// From the bodies alone: by the place where f is least if there is one, else by the direction to which the steps lead,
-/// or by the search. `next`: where to begin next time.
-template <class V>
-__attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, ContactsOf<V>& contacts,
-                                           Triple<V>& next) {
+/// or by `search`, which gives searched_contact of one lane. `next`: where to begin next time.
+template <class V, class Search>
+__attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, ContactsOf<V>& contacts, Triple<V>& next,
+                                           const Search& search) {
   using Mask = decltype(V{} < 0.0);
   const V rolling = rolling_of(pair), size = size_of(pair);
   next = first_direction(pair);
@@ -259,10 +259,7 @@ __attribute__((noinline)) void from_bodies(const SuperellipsoidPair<V>& pair, Co
   next = chosen(left, chosen(last.look.final, place, at.n), next);
   left = left & !(settled & (at.overlap <= rolling));
   if (!any_of(left)) return;
-  ask_search(left, contacts, [&](int lane) {
-    return searched_contact({in_lane(pair.form_i, lane), in_lane(pair.form_j, lane), in_lane(pair.axes_i, lane),
-                             in_lane(pair.axes_j, lane), in_lane(pair.branch, lane)});
-  });
+  ask_search(left, contacts, search);
   next = chosen(left, contacts.n, next);
 }
 
@@ -276,9 +273,13 @@ inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const Superellip
   using Mask = decltype(V{} < 0.0);
   const Mask guessed = dot(guess, guess) >= 0.25;
   const V zero = V{}, one = zero + 1.0;
+  const auto search = [&](int lane) {
+    return searched_contact({in_lane(pair.form_i, lane), in_lane(pair.form_j, lane), in_lane(pair.axes_i, lane),
+                             in_lane(pair.axes_j, lane), in_lane(pair.branch, lane)});
+  };
   if (!any_of(guessed)) {
     ContactsOf<V> contacts;
-    from_bodies(pair, contacts, guess);
+    from_bodies(pair, contacts, guess, search);
     return contacts;
   }
   guess = chosen(guessed, guess, Triple<V>{one, zero, zero});
@@ -289,7 +290,7 @@ inline __attribute__((always_inline)) ContactsOf<V> contacts_of(const Superellip
   if (any_of(left)) {
     ContactsOf<V> others;
     Triple<V> next;
-    from_bodies(pair, others, next);
+    from_bodies(pair, others, next, search);
     contacts = chosen(left, others, contacts);
     guess = chosen(left, next, guess);
   }

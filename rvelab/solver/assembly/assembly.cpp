@@ -118,9 +118,10 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.material = s.grains.material;
   model.radius = s.grains.radius;
   model.thickness = s.cell.lattice(2, 2);
+  model.ellipsoids = all_ellipsoids(s.grains);
   const auto kernels_with = [&](bool dashpot) {
     return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
-                        model.contact.hertz_radius, all_ellipsoids(s.grains)});
+                        model.contact.hertz_radius, model.ellipsoids});
   };
   model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
   model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);
@@ -240,6 +241,7 @@ GrainArrays arrays_of(const Model& model, Assembly& assembly) {
           assembly.pairs.tasks.data(),
           model.turn_first.data(),
           model.turn_second.data(),
+          model.contact.rolling,
           assembly.pairs.interactions.empty() ? nullptr : assembly.pairs.resultants.data()};
 }
 

@@ -34,6 +34,7 @@ struct Model {
   SharedArray<double> turn_first, turn_second;  ///< not round: TurnValues for the grain loop, padded to lanes
   /// Superellipsoids: what does not change in their rows, nine each (columns 3 and 16 to 23).
   SharedArray<double> form;
+  bool ellipsoids = false;       ///< superellipsoids with exponents of 2 alone
   double mean_radius = 0;        ///< m; of bodies where there are some
   double largest_reach = 0;      ///< m, of the circles around the grains
   double largest_skin = 0;       ///< m
@@ -106,7 +107,7 @@ struct InteractionTable {
 
 /// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
 /// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
-/// what touched then, and with it the index of a pair, is nothing that a restart knows.
+/// what touched then, and with it the index of a pair, is not preserved by a restart.
 struct PairTable {
   std::size_t listed = 0;           ///< pairs without the padding
   std::size_t near = 0;             ///< the first of them, computed at every step (kernels/configuration.hpp)
@@ -135,6 +136,10 @@ struct PairTable {
   Buffer on_members;  ///< what the members of bodies get from their pairs (BodyArrays::resultants)
 
   std::size_t padded() const { return i.size(); }
+  /// Of a pair, or of an interaction by its row (InteractionTable::row_at).
+  const double* force_row(int dimension, std::size_t p) const {
+    return force.data() + std::size_t(force_row_length(dimension)) * p;
+  }
 };
 
 /// Bytes that its arrays take.

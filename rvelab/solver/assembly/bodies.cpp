@@ -207,15 +207,13 @@ namespace {
 template <int D, bool Rolling>
 void gather(const BodyModel& bodies, const PairTable& pairs, const double* radius, const BodyMotions& motions,
             Resultant* resultants) {
-  constexpr std::size_t length = D == 2 ? 4 : 8;
-  const double* force = pairs.force.data();
   const std::int32_t *owner = bodies.owner.data(), *grain_i = pairs.i.data(), *grain_j = pairs.j.data();
   const std::uint8_t* touched = pairs.touched.data();
   const std::size_t near = pairs.near;
   for (const std::int32_t listed : pairs.order) {
     const auto p = std::size_t(listed);
     if (p >= near && touched[p / 8] == 0) continue;
-    const double* row = force + length * p;
+    const double* row = pairs.force_row(D, p);
     const auto i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
     Resultant &on_i = resultants[owner[i]], &on_j = resultants[owner[j]];
     const Vector3 ai = motions.arm(i), aj = motions.arm(j);
@@ -251,11 +249,10 @@ void gather(const BodyModel& bodies, const PairTable& pairs, const double* radiu
 /// The same of bodies of one grain each that is not round: the kernels give force and torques about the centres.
 template <bool Rolling>
 void gather_solids(const PairTable& pairs, Resultant* resultants) {
-  const double *force = pairs.force.data(), *solid = pairs.solid.data();
   for (const std::int32_t listed : pairs.order) {
     const auto p = std::size_t(listed);
     if (p >= pairs.near && pairs.touched[p / 8] == 0) continue;
-    const double *row = force + 8 * p, *torque_i = solid + 8 * p + 4;
+    const double *row = pairs.force_row(3, p), *torque_i = pairs.solid.data() + force_row_length(3) * p + 4;
     Resultant &on_i = resultants[pairs.i[p]], &on_j = resultants[pairs.j[p]];
     for (int k = 0; k < 3; ++k) {
       double m = 0;

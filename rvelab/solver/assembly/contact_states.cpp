@@ -170,7 +170,7 @@ struct Held {
 template <Shape shape, class Force, class Place>
 Held held_by(const Model& model, const PairTable& pairs, std::size_t p, const Place& at) {
   constexpr int D = dimension_of(shape);
-  const double* force = pairs.force.data() + p * std::size_t(force_row_length(D));
+  const double* force = pairs.force_row(D, p);
   const double fz = D == 2 ? 0.0 : force[2], nx = at.along().x / at.along_length(),
                ny = at.along().y / at.along_length(), nz = D == 2 ? 0.0 : at.along().z / at.along_length();
   const double normal = force[0] * nx + (force[1] * ny + fz * nz);

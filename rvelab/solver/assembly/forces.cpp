@@ -36,6 +36,8 @@ StepConstants base_constants(const Model& model, const Assembly& assembly) {
   c.global_viscous = model.damping.global_viscous;
   c.tangential_ratio = model.damping.tangential_ratio;
   c.dashpot_quarters = int(4 * dashpot_power(model.contact.law, model.damping.dashpot));
+  c.slip = model.contact.slip;
+  c.ellipsoids = model.ellipsoids;
   c.no_tension = model.damping.no_tension;
   c.unload_rescale = model.contact.unload_rescale;
   return c;
@@ -50,7 +52,7 @@ void evaluate_forces(const Model& model, Assembly& assembly) {
 }
 
 Vector3 force_of(const Model& model, const PairTable& pairs, std::size_t p) {
-  const double* row = pairs.force.data() + p * force_row_length(model.dimension());
+  const double* row = pairs.force_row(model.dimension(), p);
   return {row[0], row[1], model.dimension() == 2 ? 0.0 : row[2]};
 }
 
@@ -60,16 +62,15 @@ namespace {
 template <Shape shape>
 Matrix3 moment_of(const Assembly& assembly, const PairGeometry<shape>& pair, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
-  constexpr std::size_t row = D == 2 ? 4 : 8;
-  const double* force = assembly.pairs.force.data();
   double m[9] = {};
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(assembly.pairs.order[k]);
     const Branch b = pair.branch(p);
+    const double* force = assembly.pairs.force_row(D, p);
     for (int r = 0; r < D; ++r) {
-      m[3 * r] += force[row * p + std::size_t(r)] * b.x;
-      m[3 * r + 1] += force[row * p + std::size_t(r)] * b.y;
-      if constexpr (D == 3) m[3 * r + 2] += force[row * p + std::size_t(r)] * b.z;
+      m[3 * r] += force[r] * b.x;
+      m[3 * r + 1] += force[r] * b.y;
+      if constexpr (D == 3) m[3 * r + 2] += force[r] * b.z;
     }
   }
   Matrix3 sum;
@@ -97,7 +98,7 @@ constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
 /// Adds what contact p gives to one of its grains.
 template <int D>
 void add_resultant(const Model& model, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
-  const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
+  const double* row = pairs.force_row(D, p);
   for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + row[c] : r[c] - row[c];
   if constexpr (D == 2) {
     r[2] += row[as_j ? 2 : 3] / model.radius[g];
@@ -144,14 +145,13 @@ ContactSums contacts_in(const Model& model, const Assembly& assembly, const Pair
                         std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   ContactSums sums;
-  const double* force = assembly.pairs.force.data();
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(assembly.pairs.order[k]);
     const auto i = std::size_t(assembly.pairs.i[p]), j = std::size_t(assembly.pairs.j[p]);
     const double overlap = pair(p).overlap;
     if (!std::isfinite(overlap)) sums.finite = false;
     if (!(overlap > 0)) continue;
-    const double* on_j = force + p * (D == 2 ? 4 : 8);
+    const double* on_j = assembly.pairs.force_row(D, p);
     double squared = 0;
     for (std::size_t c = 0; c < D; ++c) squared += on_j[c] * on_j[c];
     if (resultants != nullptr) {

@@ -311,7 +311,7 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
         a.normal = a.branch / a.length;
         a.arm_i = model.radius[a.i] + half_gap;
         a.arm_j = model.radius[a.j] + half_gap;
-        const double* row = assembly.pairs.force.data() + (t.row_at + k) * (plane ? 4 : 8);
+        const double* row = assembly.pairs.force_row(model.dimension(), t.row_at + k);
         if (plane) {
           a.force = {row[0], row[1], 0};
           a.moment_j = {0, 0, row[2]};

@@ -12,121 +12,104 @@
 namespace rvelab {
 namespace {
 
-/// Force rows of superellipsoids: on j force and torque, on i the force turned round and the torque beside the pair.
+/// Sum of the force rows of superellipsoids, for gather_forces: on j force and torque, on i the force turned round and
+/// the torque beside the pair.
 template <int W, bool Rolling>
-inline __attribute__((always_inline)) void gather_solid_forces(const GrainArrays& g, const PairArrays& p, long first,
-                                                               long count, TaskRows& forces, TaskRows& torques) {
-  constexpr int narrow = W < 4 ? W : 4;
-  using L = Lanes<narrow>;
-  using Quad = typename L::Quad;
-  const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
-  for (long block = first / 2; block < (first + count) / 2; ++block) {
-    const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
-    const double* torque_rows[4];
-    Quad force[4], torque[4];
-    for (int k = 0; k < 4; ++k) {
-      torque_rows[k] = (g.tasks[4 * block + k] < 4 * chunk_grains ? p.force : p.solid) + 4;
-      force[k] = torque[k] = L::broadcast(0.0);
-    }
-    double moment[4][4] = {};
-    for (; slot != last; slot += 4)
-#pragma GCC unroll 4
-      for (int k = 0; k < 4; ++k) {
-        force[k] = L::add(force[k], quad_at<narrow>(p.force + slot[k]));
-        torque[k] = L::add(torque[k], quad_at<narrow>(torque_rows[k] + slot[k]));
-        if constexpr (Rolling)
-          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8];
-      }
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; ++k) {
-      const std::uint16_t task = g.tasks[4 * block + k];
-      if constexpr (Rolling)
-        torque[k] =
-            L::add(torque[k], L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<narrow>(moment[k])));
-      store_as(forces.of(task), force[k]);
-      store_as(torques.of(task), torque[k]);
-    }
+struct SolidRowSum {
+  using L = Lanes<W>;
+  typename L::Quad force, torque;
+  const double* torque_rows;
+  MomentSum<W, Rolling> moment;
+  inline __attribute__((always_inline)) void begin(const PairArrays& p, std::uint16_t task) {
+    torque_rows = (is_as_j(task) ? p.force : p.solid) + 4;
+    force = torque = L::broadcast(0.0);
   }
+  inline __attribute__((always_inline)) void add(const PairArrays& p, std::int32_t slot) {
+    force = L::add(force, quad_at<W>(p.force + slot));
+    torque = L::add(torque, quad_at<W>(torque_rows + slot));
+    moment.add(p, slot);
+  }
+  inline __attribute__((always_inline)) void put(const GrainArrays&, long, std::uint16_t task, ChunkSums& to) {
+    store_as(to.forces.of(task), force);
+    store_as(to.torques.of(task), moment.added_to(torque, task));
+  }
+};
+template <int W>
+inline __attribute__((always_inline)) void gather_solids(const GrainArrays& g, const PairArrays& p, long first,
+                                                         long count, ChunkSums& sums) {
+  constexpr int narrow = W < 4 ? W : 4;
+  if (g.rolling)
+    gather_forces<SolidRowSum<narrow, true>>(g, p, first, count, sums);
+  else
+    gather_forces<SolidRowSum<narrow, false>>(g, p, first, count, sums);
 }
 
 /// Of a chunk in space: rows of eight, {f, -, T, -}, about the centre of the body.
 template <int W, bool Solid>
 inline __attribute__((always_inline)) void put_resultants_in_space(const BodyArrays& b, long first, long count,
-                                                                   const TaskRows& forces, const TaskRows& torques) {
+                                                                   const ChunkSums& sums) {
   using L = Lanes<W>;
   using V = typename L::V;
+  constexpr int length = force_row_length(3);
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
-    typename L::Quad quads[W];
-    V f[4], t[4];
-    for (int lane = 0; lane < W; ++lane)
-      quads[lane] = L::sub(quad_at<W>(forces.as_j(k + lane)), quad_at<W>(forces.as_i(k + lane)));
-    if constexpr (Solid)
-      for (int lane = 0; lane < W; ++lane) store_as(b.resultants + 8 * (at + lane), quads[lane]);
-    else
-      L::transpose(quads, f);
-    for (int lane = 0; lane < W; ++lane)
-      quads[lane] = L::add(quad_at<W>(torques.as_j(k + lane)), quad_at<W>(torques.as_i(k + lane)));
     if constexpr (Solid) {
-      for (int lane = 0; lane < W; ++lane) store_as(b.resultants + 8 * (at + lane) + 4, quads[lane]);
+      for (int lane = 0; lane < W; ++lane) {
+        store_as(b.resultants + length * (at + lane), force_in_space<W>(sums, k + lane));
+        store_as(b.resultants + length * (at + lane) + 4, torque_in_space<W>(sums, k + lane));
+      }
       continue;
     }
+    typename L::Quad quads[W];
+    V f[4], t[4];
+    for (int lane = 0; lane < W; ++lane) quads[lane] = force_in_space<W>(sums, k + lane);
+    L::transpose(quads, f);
+    for (int lane = 0; lane < W; ++lane) quads[lane] = torque_in_space<W>(sums, k + lane);
     L::transpose(quads, t);
-    const Triple<V> arm = {load_as<V>(b.arm[0] + at), load_as<V>(b.arm[1] + at), load_as<V>(b.arm[2] + at)};
-    const Triple<V> turning = cross(arm, Triple<V>{f[0], f[1], f[2]});
-    const V torque[4] = {t[0] + turning.x, t[1] + turning.y, t[2] + turning.z, V{}};
-    rows_of<W>(f, b.resultants + 8 * at, 8);
-    rows_of<W>(torque, b.resultants + 8 * at + 4, 8);
+    const Triple<V> turning = cross(load_vec<V>(b.arm, at), first_of<3>(f));
+    rows_of<W>(f, b.resultants + length * at, length);
+    rows_of<W>(first_of<3>(t) + turning, V{}, b.resultants + length * at + 4, length);
   }
 }
 
 /// Of a chunk in the plane: rows of four, {fx, fy, T, -}.
 template <int W>
 inline __attribute__((always_inline)) void put_resultants_in_plane(const BodyArrays& b, long first, long count,
-                                                                   const TaskRows& sums) {
+                                                                   const ChunkSums& sums) {
   using L = Lanes<W>;
   using V = typename L::V;
+  constexpr int length = force_row_length(2);
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
     typename L::Quad net[W];
-    for (int lane = 0; lane < W; ++lane)
-      net[lane] = L::add(quad_at<W>(sums.as_j(k + lane)), L::seen_from_i(quad_at<W>(sums.as_i(k + lane))));
+    for (int lane = 0; lane < W; ++lane) net[lane] = resultant_in_plane<W>(sums, k + lane);
     V a[4];
     L::transpose(net, a);
-    const V arm_x = load_as<V>(b.arm[0] + at), arm_y = load_as<V>(b.arm[1] + at);
-    const V row[4] = {a[0], a[1], a[2] + (arm_x * a[1] - arm_y * a[0]), V{}};
-    rows_of<W>(row, b.resultants + 4 * at, 4);
+    const Vec<V, 2> arm = load_vec<V, 2>(b.arm, at);
+    const V row[4] = {a[0], a[1], a[2] + (arm.x * a[1] - arm.y * a[0]), V{}};
+    rows_of<W>(row, b.resultants + length * at, length);
   }
 }
 
 /// `By`: the shape, like Disc.
-template <class By, int W, bool Rolling>
+template <class By, int W>
 void gather_on_members(const GrainArrays& grains, const PairArrays& pairs, const BodyArrays& bodies, long begin,
                        long end) {
-  const GrainArrays g = grains;
-  const PairArrays p = pairs;
   const BodyArrays b = bodies;
-  TaskRows forces;
-  [[maybe_unused]] TaskRows torques;
+  ChunkSums sums;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
     if constexpr (By::dimension == 2) {
-      gather_disc_forces<W>(g, p, chunk, count, forces);
-      put_resultants_in_plane<W>(b, chunk, count, forces);
+      gather_in_plane<W>(grains, pairs, chunk, count, sums);
+      put_resultants_in_plane<W>(b, chunk, count, sums);
     } else {
       if constexpr (By::round)
-        gather_sphere_forces<W, Rolling>(g, p, chunk, count, forces, torques);
+        gather_spheres<W>(grains, pairs, chunk, count, sums);
       else
-        gather_solid_forces<W, Rolling>(g, p, chunk, count, forces, torques);
-      put_resultants_in_space<W, !By::round>(b, chunk, count, forces, torques);
+        gather_solids<W>(grains, pairs, chunk, count, sums);
+      put_resultants_in_space<W, !By::round>(b, chunk, count, sums);
     }
   }
-}
-
-/// An upper triangular matrix times a vector.
-template <class V>
-inline __attribute__((always_inline)) Triple<V> mapped(const UpperTriangle& m, const Triple<V>& a) {
-  return {m.xx * a.x + (m.xy * a.y + m.xz * a.z), m.yy * a.y + m.yz * a.z, m.zz * a.z};
 }
 
 /// Spheres.
@@ -136,31 +119,23 @@ inline __attribute__((always_inline)) typename Lanes<W>::V place_in_space(const 
                                                                           double* rows, long at) {
   using V = typename Lanes<W>::V;
   constexpr int length = body_row_length;
-  const V one = V{} + 1.0;
   const std::int32_t* body = b.row_of_owner + at;
   V x[4], u[4], q[4], w[4];
   ColumnsOf<W>::load([=](int k) { return b.motion + body[k]; }, x);
   ColumnsOf<W>::load([=](int k) { return b.motion + body[k] + 4; }, u);
   ColumnsOf<W>::load([=](int k) { return b.motion + body[k] + 12; }, q);
   ColumnsOf<W>::load([=](int k) { return b.turning + body[k] / (length / 4); }, w);
-  const Triple<V> offset = {load_as<V>(b.offset[0] + at), load_as<V>(b.offset[1] + at), load_as<V>(b.offset[2] + at)};
-  const Triple<V> image = {load_as<V>(b.image[0] + at), load_as<V>(b.image[1] + at), load_as<V>(b.image[2] + at)};
-  const Triple<V> from = load_triple<V>(b.arm, at);
-  const Triple<V> arm = to_cell(axes_of(LaneTurn<V>{q[0], {q[1], q[2], q[3]}}), offset);
-  store_triple(b.arm, at, arm);
-  const Triple<V> middle = times(V{} + 0.5, plus(from, one, arm));
-  const Triple<V> by_turn = mapped(o.inverse_stretch, cross(Triple<V>{w[0], w[1], w[2]}, middle));
-  const Triple<V> by_strain = mapped(o.gradient, from), shift = mapped(c.lattice, image);
-  const Triple<V> v = {(u[0] + by_turn.x) - by_strain.x, (u[1] + by_turn.y) - by_strain.y,
-                       (u[2] + by_turn.z) - by_strain.z};
+  const Triple<V> from = load_vec<V>(b.arm, at);
+  const Triple<V> arm = to_cell(axes_of(LaneTurn<V>{q[0], {q[1], q[2], q[3]}}), load_vec<V>(b.offset, at));
+  store_vec(b.arm, at, arm);
+  const Triple<V> spin = first_of<3>(w), middle = times(0.5, from + arm);
+  const Triple<V> by_turn = mapped(o.inverse_stretch, cross(spin, middle)), by_strain = mapped(o.gradient, from);
+  const Triple<V> v = (first_of<3>(u) + by_turn) - by_strain;
   double* row = rows + 12 * at;
   const V radius = Lanes<W>::collected([=](int k) { return row[12 * k + 3]; });
-  const V places[4] = {(x[0] + arm.x) + shift.x, (x[1] + arm.y) + shift.y, (x[2] + arm.z) + shift.z, radius};
-  const V velocities[4] = {v.x, v.y, v.z, V{}};
-  const V spins[4] = {w[0] - c.spin[0], w[1] - c.spin[1], w[2] - c.spin[2], radius};
-  rows_of<W>(places, row, 12);
-  rows_of<W>(velocities, row + 4, 12);
-  rows_of<W>(spins, row + 8, 12);
+  rows_of<W>(branch_with_image(c.lattice, first_of<3>(x) + arm, load_vec<V>(b.image, at)), radius, row, 12);
+  rows_of<W>(v, V{}, row + 4, 12);
+  rows_of<W>(without_cell_spin(c, spin), radius, row + 8, 12);
   return dot(v, v);
 }
 
@@ -180,22 +155,18 @@ inline __attribute__((always_inline)) typename Lanes<W>::V place_in_plane(const 
   ColumnsOf<W>::load([=](int k) { return motion + body[k] + 12; }, q);
   const V w = Lanes<W>::collected([=](int k) { return turning[body[k] / (length / 4)]; });
   const V cosine = one - two * (q[3] * q[3]), sine = two * (q[0] * q[3]);
-  const V ox = load_as<V>(b.offset[0] + at), oy = load_as<V>(b.offset[1] + at);
-  const V from_x = load_as<V>(b.arm[0] + at), from_y = load_as<V>(b.arm[1] + at);
-  const V arm_x = cosine * ox - sine * oy, arm_y = sine * ox + cosine * oy;
-  store_as(b.arm[0] + at, arm_x);
-  store_as(b.arm[1] + at, arm_y);
-  const V turn_x = -w * (0.5 * (from_y + arm_y)), turn_y = w * (0.5 * (from_x + arm_x));
-  const UpperTriangle &B = o.inverse_stretch, &G = o.gradient, &L = c.lattice;
-  const V vx = (u[0] + (B.xx * turn_x + B.xy * turn_y)) - (G.xx * from_x + G.xy * from_y);
-  const V vy = (u[1] + B.yy * turn_y) - G.yy * from_y;
-  const V nx = load_as<V>(b.image[0] + at), ny = load_as<V>(b.image[1] + at);
+  const Vec<V, 2> offset = load_vec<V, 2>(b.offset, at), from = load_vec<V, 2>(b.arm, at);
+  const Vec<V, 2> arm = {cosine * offset.x - sine * offset.y, sine * offset.x + cosine * offset.y};
+  store_vec(b.arm, at, arm);
+  const Vec<V, 2> middle = times(0.5, from + arm), turned = {-w * middle.y, w * middle.x};
+  const Vec<V, 2> v = (first_of<2>(u) + mapped(o.inverse_stretch, turned)) - mapped(o.gradient, from);
+  const Vec<V, 2> position = branch_with_image(c.lattice, first_of<2>(x) + arm, load_vec<V, 2>(b.image, at));
   double* row = rows + 8 * at;
-  const V places[4] = {(x[0] + arm_x) + (L.xx * nx + L.xy * ny), (x[1] + arm_y) + L.yy * ny, vx, vy};
+  const V places[4] = {position.x, position.y, v.x, v.y};
   const V spins[4] = {w - c.spin[2], V{}, V{}, V{}};
   rows_of<W>(places, row, 8);
   rows_of<W>(spins, row + 4, 8);
-  return vx * vx + vy * vy;
+  return dot(v, v);
 }
 
 template <int W, int dimension>

@@ -67,19 +67,10 @@ const InstructionSet& widest_set() {
   throw InputError(std::string("RVELAB_ISA=") + wanted + " cannot run here; use one of " + names);
 }
 
-/// The slip conventions of other codes are compiled for the baseline and the scalar reference alone (step_kernels.hpp).
-const InstructionSet& chosen_set(Slip slip) {
-  const InstructionSet& widest = widest_set();
-  if (slip == Slip::consistent) return widest;
-  const auto& sets = instruction_sets();
-  const InstructionSet &baseline = sets[sets.size() - 2], &scalar = sets.back();
-  return std::string(widest.name) == scalar.name ? scalar : baseline;
-}
-
 }  // namespace
 
 Kernels kernels_for(const KernelConfiguration& key) {
-  const InstructionSet& set = chosen_set(key.slip);
+  const InstructionSet& set = widest_set();
   Kernels kernels;
   instruction_sets().back().of(key.shape)(key, kernels);
   set.of(key.shape)(key, kernels);

@@ -34,6 +34,9 @@ struct Dissipation {
   double friction = 0, rolling = 0, dashpot = 0, law_loss = 0;
 };
 
+/// Doubles of the force row of a pair (PairArrays::force).
+constexpr int force_row_length(int dimension) { return dimension == 2 ? 4 : 8; }
+
 /// Constants of one sub-step (all in the cell frame).
 struct StepConstants {
   double dt = 0;                 ///< s; 1 in quasi-static loading
@@ -51,6 +54,8 @@ struct StepConstants {
   double global_viscous = 0;    ///< N s/m
   double tangential_ratio = 0;  ///< tangential over normal dashpot
   int dashpot_quarters = 0;     ///< power of the overlap in the dashpot coefficient, in quarters
+  Slip slip = Slip::consistent;
+  bool ellipsoids = false;  ///< as KernelConfiguration has it
   bool no_tension = false;
   bool unload_rescale = true;
   bool losses = false;  ///< at a rate: sums of what the dampings take are asked for
@@ -91,8 +96,8 @@ struct PairArrays {
 constexpr long chunk_grains = 64;
 
 /// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz, r}; shapes
-/// that are not round {x, y, u, v, w, ex, ey, l, ...} with e along the long axis and l = Extent::turning, and what they
-/// like from there on (ellipses.hpp). Padded to a multiple of eight with grains of no extent and infinite mass, at
+/// that are not round {x, y, u, v, w, ex, ey, l, ...} with e along the long axis and l = Extent::turning, and then
+/// shape-specific numbers (ellipses.hpp). Padded to a multiple of eight with grains of no extent and infinite mass, at
 /// least one of them.
 struct GrainArrays {
   double* rows = nullptr;
@@ -107,6 +112,7 @@ struct GrainArrays {
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
   const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
+  bool rolling = false;                                        ///< in space the moments of pairs are gathered too
   /// What interactions other than contacts give to each grain, as long as grain rows, or null: in the plane {fx, fy, T,
   /// ...}, in space {fx, fy, fz, -, T, -, ...}. The grain loop takes them: it leaves zeros for the next sub-step.
   double* resultants = nullptr;
@@ -196,9 +202,8 @@ struct Kernels {
 };
 
 /// Kernels for a configuration: the widest that processor and build offer, or what the environment variable RVELAB_ISA
-/// names (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits.
+/// names (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits. What is
+/// compiled for the scalar reference alone (step_kernels.hpp) is taken from there.
 Kernels kernels_for(const KernelConfiguration& key);
-
-constexpr int force_row_length(int dimension) { return dimension == 2 ? 4 : 8; }
 
 }  // namespace rvelab

@@ -18,11 +18,12 @@ namespace {
 
 /// What the passes hand on.
 struct EllipseScratch {
-  ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i; then the branch
+  VecColumn<2> branch, velocity;  ///< velocity: v' of j less that of i
   ScratchColumn spin_i, spin_j;
   ScratchColumn squared, form_i[3], form_j[3];  ///< BranchFrame
   ScratchColumn tangent, curvature, ended, deepest;
-  ScratchColumn nx, ny, overlap;
+  VecColumn<2> normal;
+  ScratchColumn overlap;
   ScratchColumn reach_i, reach_j;  ///< h
   ScratchColumn turn_i, turn_j;    ///< h' - f'/2
   ScratchColumn along, opening;    ///< relative velocity of the centres over the step, along t and along n
@@ -56,11 +57,10 @@ inline __attribute__((always_inline)) EllipseMatrix<V> matrix_of(const typename 
   return matrix_from(m[0], m[1], m[2], m[3]);
 }
 
-/// Grain rows to columns: places, motion, and the pair in the frame of its branch, with its first direction.
-template <class T>
+/// Grain rows to columns: branch, motion, and the pair in the frame of its branch, with its first direction.
+template <int W, bool Moves>
 inline __attribute__((always_inline)) void ellipse_rows(const StepConstants& c, const PairArrays& p, const double* rows,
                                                         long first, long count, EllipseScratch& s) {
-  constexpr int W = T::W;
   using L = Lanes<W>;
   using V = typename L::V;
   using Quad = typename L::Quad;
@@ -72,21 +72,17 @@ inline __attribute__((always_inline)) void ellipse_rows(const StepConstants& c, 
       difference[lane] = L::sub(quad_at<W>(row_j), quad_at<W>(row_i));
       of_i[lane] = quad_at<W>(row_i + 8);
       of_j[lane] = quad_at<W>(row_j + 8);
-      if constexpr (T::Advance || T::Dashpot) {
+      if constexpr (Moves) {
         s.spin_i.at[k + lane] = row_i[4];
         s.spin_j.at[k + lane] = row_j[4];
       }
     }
     V d[4];
     L::transpose(difference, d);
-    if constexpr (T::Advance || T::Dashpot) {
-      store_as(s.du.at + k, d[2]);
-      store_as(s.dv.at + k, d[3]);
-    }
-    EllipsePair<V> pair = {d[0], d[1], matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
-    add_image_in_plane(c, p, first + k, pair.x, pair.y);
-    store_as(s.dx.at + k, pair.x);
-    store_as(s.dy.at + k, pair.y);
+    if constexpr (Moves) s.velocity.store(k, Vec<V, 2>{d[2], d[3]});
+    const Vec<V, 2> branch = branch_of(c, p, first + k, first_of<2>(d));
+    s.branch.store(k, branch);
+    const EllipsePair<V> pair = {branch.x, branch.y, matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
     const BranchFrame<V> frame = branch_frame(pair);
     store_as(s.squared.at + k, frame.squared);
     put_form(s.form_i, k, frame.i);
@@ -125,11 +121,11 @@ __attribute__((noinline)) bool further_step(EllipseScratch& s, long k, bool last
 /// What closest_place finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
 /// time of another's, where each to its end left the processor waiting (a sub-step takes 0.82 of that time with eight
 /// lanes, 0.77 with four).
-template <class T>
+template <int W>
 inline __attribute__((always_inline)) void ellipse_directions(long count, EllipseScratch& s) {
-  using V = typename Lanes<T::W>::V;
-  long blocks[chunk_pairs / T::W], open = 0;
-  for (long k = 0; k < count; k += T::W) {
+  using V = typename Lanes<W>::V;
+  long blocks[chunk_pairs / W], open = 0;
+  for (long k = 0; k < count; k += W) {
     blocks[open] = k;
     open += first_step<V>(s, k);
   }
@@ -143,65 +139,62 @@ inline __attribute__((always_inline)) void ellipse_directions(long count, Ellips
   }
 }
 
-/// The pair along its direction, to columns, with the motion of the centres.
-template <class T, class V>
-inline __attribute__((always_inline)) void put_place(const StepConstants& c, const EllipsePlace<V>& place, V x, V y,
-                                                     long k, EllipseScratch& s) {
+/// The pair along its direction, to columns, with the motion of the centres; `Opens`: along n too.
+template <bool Moves, bool Opens, class V>
+inline __attribute__((always_inline)) void put_place(const StepConstants& c, const EllipsePlace<V>& place,
+                                                     const Vec<V, 2>& branch, long k, EllipseScratch& s) {
   const V half_slope = 0.5 * place.slope;
-  store_as(s.nx.at + k, place.n.x);
-  store_as(s.ny.at + k, place.n.y);
+  const Vec<V, 2> n = {place.n.x, place.n.y};
+  s.normal.store(k, n);
   store_as(s.overlap.at + k, place.overlap);
   store_as(s.reach_i.at + k, place.support_i);
   store_as(s.reach_j.at + k, place.support_j);
   store_as(s.turn_i.at + k, place.turned_i - half_slope);
   store_as(s.turn_j.at + k, place.turned_j - half_slope);
-  if constexpr (T::Advance || T::Dashpot) {
-    const double half_dt = 0.5 * c.dt;
-    const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
-    const V px = x - half_dt * du, py = y - half_dt * dv;
-    const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
-    store_as(s.along.at + k, place.n.x * vy - place.n.y * vx);
-    if constexpr (T::Dashpot) store_as(s.opening.at + k, place.n.x * vx + place.n.y * vy);
+  if constexpr (Moves) {
+    const Vec<V, 2> v = relative_velocity(c, branch, s.velocity.load<V>(k));
+    store_as(s.along.at + k, n.x * v.y - n.y * v.x);
+    if constexpr (Opens) store_as(s.opening.at + k, dot(n, v));
   }
 }
 
 /// The same of pairs that take a step more or are too deep for steps. Seldom, and so not inlined.
-template <class T>
+template <int W, bool Moves, bool Opens>
 __attribute__((noinline)) void put_far_place(const StepConstants& c, const PairArrays& p, const double* rows,
                                              long first, long k, EllipseScratch& s) {
-  constexpr int W = T::W;
   using V = typename Lanes<W>::V;
   const long at = first + k;
-  const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k), t = load_as<V>(s.tangent.at + k);
+  const Vec<V, 2> b = s.branch.load<V>(k);
+  const V t = load_as<V>(s.tangent.at + k);
   const BranchFrame<V> frame = frame_in<V>(s, k);
-  EllipsePlace<V> place = place_along(frame, x, y, t);
+  EllipsePlace<V> place = place_along(frame, b.x, b.y, t);
   const MaskOf<V> settled = is_settled(place, load_as<V>(s.curvature.at + k));
-  if (any_of(!settled)) place = settled_place(frame, x, y, t, settled);
+  if (any_of(!settled)) place = settled_place(frame, b.x, b.y, t, settled);
   typename Lanes<W>::Quad of_i[W], of_j[W];
   for (int lane = 0; lane < W; ++lane) {
     of_i[lane] = quad_at<W>(rows + p.row_i[at + lane] + 8);
     of_j[lane] = quad_at<W>(rows + p.row_j[at + lane] + 8);
   }
-  const EllipsePair<V> pair = {x, y, matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
+  const EllipsePair<V> pair = {b.x, b.y, matrix_of<V, W>(of_i), matrix_of<V, W>(of_j)};
   const MaskOf<V> deep = !is_shallow(pair, place.overlap);
   if (any_of(deep)) place = searched_where(deep, pair, place);
-  put_place<T>(c, place, x, y, k, s);
+  put_place<Moves, Opens>(c, place, b, k, s);
 }
 
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
-template <class T>
-__attribute__((noinline)) void ellipse_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                              long first, long count, EllipseScratch& s) {
-  using V = typename Lanes<T::W>::V;
-  ellipse_rows<T>(c, p, rows, first, count, s);
-  ellipse_directions<T>(count, s);
-  for (long k = 0; k < count; k += T::W) {
-    const V x = load_as<V>(s.dx.at + k), y = load_as<V>(s.dy.at + k);
-    const EllipsePlace<V> place = place_along(frame_in<V>(s, k), x, y, load_as<V>(s.tangent.at + k));
-    put_place<T>(c, place, x, y, k, s);
+template <int W, bool Moves, bool Opens>
+__attribute__((noinline)) void locate_ellipses(const StepConstants& c, const PairArrays& p, const double* rows,
+                                               long first, long count, EllipseScratch& s) {
+  using V = typename Lanes<W>::V;
+  ellipse_rows<W, Moves>(c, p, rows, first, count, s);
+  ellipse_directions<W>(count, s);
+  for (long k = 0; k < count; k += W) {
+    const Vec<V, 2> b = s.branch.load<V>(k);
+    const EllipsePlace<V> place = place_along(frame_in<V>(s, k), b.x, b.y, load_as<V>(s.tangent.at + k));
+    put_place<Moves, Opens>(c, place, b, k, s);
     const MaskOf<V> found =
         is_settled(place, load_as<V>(s.curvature.at + k)) & (place.overlap <= load_as<V>(s.deepest.at + k));
-    if (any_of(!found)) put_far_place<T>(c, p, rows, first, k, s);
+    if (any_of(!found)) put_far_place<W, Moves, Opens>(c, p, rows, first, k, s);
   }
 }
 
@@ -209,15 +202,14 @@ __attribute__((noinline)) void ellipse_places(const StepConstants& c, const Pair
 template <int W>
 void ellipse_pair_places(const StepConstants& c, const PairArrays& p, const double* rows, long begin, long end,
                          double* places) {
-  using T = PairTraits<W, false, Slip::consistent, false, false>;
   using V = typename Lanes<W>::V;
   EllipseScratch s;
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    ellipse_places<T>(c, p, rows, first, count, s);
+    locate_ellipses<W, false, false>(c, p, rows, first, count, s);
     for (long k = 0; k < count; k += W) {
-      const V near[4] = {load_as<V>(s.nx.at + k), load_as<V>(s.ny.at + k), load_as<V>(s.overlap.at + k),
-                         load_as<V>(s.reach_i.at + k)},
+      const Vec<V, 2> n = s.normal.load<V>(k);
+      const V near[4] = {n.x, n.y, load_as<V>(s.overlap.at + k), load_as<V>(s.reach_i.at + k)},
               far[4] = {load_as<V>(s.reach_j.at + k), load_as<V>(s.turn_i.at + k), load_as<V>(s.turn_j.at + k), V{}};
       double* const row = places + place_row_length * (first + k);
       rows_of<W>(near, row, place_row_length);
@@ -237,17 +229,17 @@ struct EllipseRows {
   static constexpr int length = Ellipse::row_length;
   static constexpr bool turns = true;
 
-  /// Of W grains from `first` on, which move with u, v, w. `fastest`: (|v'| + (a - b) |w|)^2, the largest so far.
+  /// Of W grains from `first` on, which move with v and w; their speed is |v'| + (a - b) |w|.
   template <int W, class V>
-  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first, V u,
-                                                         V v, V w, const V (&a)[4], V& fastest) {
+  static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first,
+                                                         const Vec<V, 2>& v, V w, const V (&a)[4], LaneSums<W>& sums) {
     double* row = g.rows + length * first;
     const double half_dt = 0.5 * c.dt;
     const V x = a[1], y = a[2], axes_gap = a[3];
     const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
     const V spin = w + c.spin[2];
-    const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(spin), squared = speed * speed;
-    fastest = (squared > fastest) ? squared : fastest;
+    const V speed = square_root(dot(v, v)) + axes_gap * magnitude_of(spin);
+    sums.see_speed(speed * speed);
     const V q = half_dt * spin;
     const V inverse = 1.0 / (1.0 + q * q), cosine = (1.0 - q * q) * inverse, sine = (q + q) * inverse;
     const V tx = cosine * x - sine * y, ty = cosine * y + sine * x;
@@ -270,7 +262,7 @@ struct Ellipses {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    ellipse_places<T>(c, p, rows, first, count, s);
+    locate_ellipses<T::W, T::Moves, T::Dashpot>(c, p, rows, first, count, s);
   }
   template <class T>
   static inline __attribute__((always_inline)) auto contact(const StepConstants& c, const PairArrays& p, long at,
@@ -278,8 +270,7 @@ struct Ellipses {
     using V = typename Lanes<T::W>::V;
     PlaneContact<V> contact;
     const V reach_i = load_as<V>(s.reach_i.at + k), reach_j = load_as<V>(s.reach_j.at + k);
-    contact.nx = load_as<V>(s.nx.at + k);
-    contact.ny = load_as<V>(s.ny.at + k);
+    contact.n = s.normal.load<V>(k);
     contact.overlap = load_as<V>(s.overlap.at + k);
     contact.turn_i = load_as<V>(s.turn_i.at + k);
     contact.turn_j = load_as<V>(s.turn_j.at + k);
@@ -289,7 +280,7 @@ struct Ellipses {
     if constexpr (T::Curvature)
       contact.radius_ratio =
           hertz_radius_ratio(load_as<V>(p.radius_i + at), reach_i, load_as<V>(p.radius_j + at), reach_j);
-    if constexpr (T::Advance || T::Dashpot) {
+    if constexpr (T::Moves) {
       const V spin_i = load_as<V>(s.spin_i.at + k), spin_j = load_as<V>(s.spin_j.at + k);
       contact.slip_rate =
           (load_as<V>(s.along.at + k) - ((reach_j * spin_j + reach_i * spin_i) + c.spin[2] * (reach_i + reach_j))) +
@@ -311,12 +302,11 @@ __attribute__((noinline)) bool Ellipses::may_touch(const StepConstants& c, const
                                                    long first) {
   using V = typename Lanes<W>::V;
   for (long at = first; at < first + 8; at += W) {
-    V d[2], i[4], j[4];
-    gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
+    const Vec<V, 2> b = branch_of(c, p, at, gather_position_differences<W>(rows, p.row_i + at, p.row_j + at));
+    V i[4], j[4];
     ColumnsOf<W>::load([=](int lane) { return rows + p.row_i[at + lane] + 8; }, i);
     ColumnsOf<W>::load([=](int lane) { return rows + p.row_j[at + lane] + 8; }, j);
-    add_image_in_plane(c, p, at, d[0], d[1]);
-    const EllipsePair<V> pair = {d[0], d[1], matrix_from(i[0], i[1], i[2], i[3]), matrix_from(j[0], j[1], j[2], j[3])};
+    const EllipsePair<V> pair = {b.x, b.y, matrix_from(i[0], i[1], i[2], i[3]), matrix_from(j[0], j[1], j[2], j[3])};
     if (any_of(!shows_apart(pair, leaving_direction(pair)))) return true;
   }
   return false;

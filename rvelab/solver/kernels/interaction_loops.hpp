@@ -9,14 +9,11 @@
 namespace rvelab {
 namespace {
 
-/// Branch of pairs; unlike those of contacts nearly all that matter are near, and no block is without a look at images.
-template <class V>
-inline __attribute__((always_inline)) Triple<V> interaction_branch(const StepConstants& c, const InteractionArrays& p,
-                                                                   long at, const Triple<V>& d) {
-  const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-  const V image_z = load_as<V>(p.image[2] + at);
-  return {d.x + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
-          d.y + (c.lattice.yy * image_y + c.lattice.yz * image_z), d.z + c.lattice.zz * image_z};
+/// Branches; unlike those of contacts nearly all that matter are near, and images are added without asking.
+template <class V, int D>
+inline __attribute__((always_inline)) Vec<V, D> branch_of(const StepConstants& c, const InteractionArrays& p, long at,
+                                                          const Vec<V, D>& d) {
+  return branch_with_image(c.lattice, d, load_vec<V, D>(p.image, at));
 }
 
 template <class Law, int W, bool Advance>
@@ -25,33 +22,29 @@ void plane_interactions(const StepConstants& constants, const InteractionArrays&
   using V = typename Lanes<W>::V;
   const StepConstants c = constants;
   const InteractionArrays p = arrays;
-  const double half_dt = 0.5 * c.dt;
   for (long at = begin; at < end; at += W) {
-    V d[4];
-    gather_differences<W>(rows, p.row_i + at, p.row_j + at, d);
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const V bx = d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y), by = d[1] + c.lattice.yy * image_y;
+    V following[2];
+    const Vec<V, 2> b = branch_of(c, p, at, gather_differences<W, 2>(rows, p.row_i + at, p.row_j + at, following));
     PlaneMotion<V> m;
-    m.length = square_root(bx * bx + by * by);
-    const V nx = bx / m.length, ny = by / m.length;
+    m.length = square_root(dot(b, b));
+    const Vec<V, 2> n = {b.x / m.length, b.y / m.length};
     const V radius_i = load_as<V>(p.radius_i + at), radius_j = load_as<V>(p.radius_j + at);
     const V half_gap = 0.5 * (m.length - (radius_i + radius_j));
     const V arm_i = radius_i + half_gap, arm_j = radius_j + half_gap;
     if constexpr (Advance) {
       const V spin_i = gather_spins<W>(rows, p.row_i + at), spin_j = gather_spins<W>(rows, p.row_j + at);
-      const V px = bx - half_dt * d[2], py = by - half_dt * d[3];
-      const V vx = d[2] + (c.rate.xx * px + c.rate.xy * py), vy = d[3] + c.rate.yy * py;
-      m.slip = c.dt * ((nx * vy - ny * vx) - ((arm_j * spin_j + arm_i * spin_i) + c.spin[2] * m.length));
+      const Vec<V, 2> v = relative_velocity(c, b, first_of<2>(following));
+      m.slip = c.dt * ((n.x * v.y - n.y * v.x) - ((arm_j * spin_j + arm_i * spin_i) + c.spin[2] * m.length));
       m.turn = c.dt * (spin_j - spin_i);
     }
     const PlaneForces<V> f = Law::template in_plane<Advance, V>(p, at, m);
-    const V columns[4] = {nx * f.normal - ny * f.tangential, ny * f.normal + nx * f.tangential,
+    const V columns[4] = {n.x * f.normal - n.y * f.tangential, n.y * f.normal + n.x * f.tangential,
                           f.moment - arm_j * f.tangential, (V{} - f.moment) - arm_i * f.tangential};
     using L = Lanes<W>;
     typename L::Quad force[W];
     L::untranspose(columns, force);
     for (int lane = 0; lane < W; ++lane) {
-      store_as(p.force + 4 * (at + lane), force[lane]);
+      store_as(p.force + force_row_length(2) * (at + lane), force[lane]);
       double *on_i = p.resultants + p.row_i[at + lane], *on_j = p.resultants + p.row_j[at + lane];
       store_as(on_j, L::add(quad_at<W>(on_j), force[lane]));
       store_as(on_i, L::add(quad_at<W>(on_i), L::seen_from_i(force[lane])));
@@ -90,25 +83,17 @@ struct SpaceInteractionScratch {
 
 /// Normals and motion of the centres.
 template <int W, bool Advance, class Scratch>
-inline __attribute__((always_inline)) void interaction_places(const StepConstants& c, const InteractionArrays& p,
-                                                              const double* rows, long first, long count, Scratch& s) {
+inline __attribute__((always_inline)) void locate_interactions(const StepConstants& c, const InteractionArrays& p,
+                                                               const double* rows, long first, long count, Scratch& s) {
   using V = typename Lanes<W>::V;
-  const double half_dt = 0.5 * c.dt;
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
-    V d[4];
-    gather_differences<W>(rows, p.row_i + at, p.row_j + at, d);
-    const Triple<V> b = interaction_branch<V>(c, p, at, {d[0], d[1], d[2]});
+    const Triple<V> b = branch_of(c, p, at, gather_differences<W, 3>(rows, p.row_i + at, p.row_j + at));
     const V length = square_root(dot(b, b)), one = V{} + 1.0;
     s.normal.store(k, times(one / length, b));
     store_as(s.length.at + k, length);
-    if constexpr (Advance) {
-      V u[4];
-      gather_differences<W>(rows + 4, p.row_i + at, p.row_j + at, u);
-      const Triple<V> x = plus(b, V{} - half_dt, {u[0], u[1], u[2]});
-      s.velocity.store(k, Triple<V>{u[0] + (c.rate.xx * x.x + (c.rate.xy * x.y + c.rate.xz * x.z)),
-                                    u[1] + (c.rate.yy * x.y + c.rate.yz * x.z), u[2] + c.rate.zz * x.z});
-    }
+    if constexpr (Advance)
+      s.velocity.store(k, relative_velocity(c, b, gather_differences<W, 3>(rows + 4, p.row_i + at, p.row_j + at)));
   }
 }
 
@@ -128,9 +113,8 @@ inline __attribute__((always_inline)) void interaction_motion(const StepConstant
       ColumnsOf<W>::load([=](int lane) { return rows + i[lane] + 8; }, si);
       ColumnsOf<W>::load([=](int lane) { return rows + j[lane] + 8; }, sj);
       // a_j w_j + a_i w_i + l W = l/2 (w_i + w_j + 2 W) + (r_j - r_i)/2 (w_j - w_i), since the arms a add up to l.
-      const Triple<V> sum = {(si[0] + sj[0]) + 2.0 * c.spin[0], (si[1] + sj[1]) + 2.0 * c.spin[1],
-                             (si[2] + sj[2]) + 2.0 * c.spin[2]};
-      const Triple<V> difference = {sj[0] - si[0], sj[1] - si[1], sj[2] - si[2]};
+      const Triple<V> of_i = first_of<3>(si), of_j = first_of<3>(sj), difference = of_j - of_i;
+      const Triple<V> sum = with_cell_spin(c, of_i + of_j, 2.0);
       const V half = 0.5 * length, more_at_j = 0.5 * (sj[3] - si[3]);
       store_as(s.arm_j.at + k, half + more_at_j);
       const Triple<V> arms = plus(times(half, sum), more_at_j, difference);
@@ -140,7 +124,7 @@ inline __attribute__((always_inline)) void interaction_motion(const StepConstant
       const V twist = (0.5 * c.dt) * dot(n, sum);
       for (int which = 0; which < vector_fields<Law>(); ++which) {
         const TurnedHistory<V> turned =
-            turned_history(load_triple<V>(p.column + column_of_vector<Law>(which), at), n, twist, true);
+            turned_history(load_vec<V>(p.column + column_of_vector<Law>(which), at), n, twist, true);
         s.history[which].store(k, turned.vector);
         store_as(s.restoring[which].at + k, turned.factor);
       }
@@ -148,7 +132,7 @@ inline __attribute__((always_inline)) void interaction_motion(const StepConstant
   }
 }
 
-/// Force rows, and what they give to both grains; the last of four numbers is of no account. Without the sums, where
+/// Force rows, and what they give to both grains; the last of four numbers is unused. Without the sums, where
 /// the grain loop gathered the rows as those of contacts, it took 106 instructions a grain more and this loop 55 less.
 template <int W, class V>
 inline __attribute__((always_inline)) void add_to_grains(const InteractionArrays& p, long at, const Triple<V>& force,
@@ -161,8 +145,9 @@ inline __attribute__((always_inline)) void add_to_grains(const InteractionArrays
   for (int k = 0; k < 3; ++k) L::untranspose(columns[k], rows[k]);
 #pragma GCC unroll 8
   for (int lane = 0; lane < W; ++lane) {
-    store_as(p.force + 8 * (at + lane), rows[0][lane]);
-    store_as(p.force + 8 * (at + lane) + 4, rows[1][lane]);
+    double* row = p.force + force_row_length(3) * (at + lane);
+    store_as(row, rows[0][lane]);
+    store_as(row + 4, rows[1][lane]);
     double *on_i = p.resultants + p.row_i[at + lane], *on_j = p.resultants + p.row_j[at + lane];
     store_as(on_j, L::add(quad_at<W>(on_j), rows[0][lane]));
     store_as(on_j + 4, L::add(quad_at<W>(on_j + 4), rows[1][lane]));
@@ -190,7 +175,7 @@ inline __attribute__((always_inline)) void interaction_forces(const InteractionA
         turned[which] = times(load_as<V>(s.restoring[which].at + k), s.history[which].template load<V>(k));
     } else {
       for (int which = 0; which < vectors; ++which)
-        turned[which] = load_triple<V>(p.column + column_of_vector<Law>(which), at);
+        turned[which] = load_vec<V>(p.column + column_of_vector<Law>(which), at);
     }
     const SpaceForces<V> f = Law::template in_space<Advance, V>(p, at, m, turned);
     V arm_j;
@@ -199,8 +184,7 @@ inline __attribute__((always_inline)) void interaction_forces(const InteractionA
     else
       arm_j = 0.5 * m.length + 0.5 * (load_as<V>(p.radius_j + at) - load_as<V>(p.radius_i + at));
     const Triple<V> turning = cross(m.n, f.tangential), backward = times(arm_j - m.length, turning);
-    add_to_grains<W>(p, at, plus(f.tangential, f.normal, m.n), minus(f.moment, arm_j, turning),
-                     {backward.x - f.moment.x, backward.y - f.moment.y, backward.z - f.moment.z});
+    add_to_grains<W>(p, at, plus(f.tangential, f.normal, m.n), minus(f.moment, arm_j, turning), backward - f.moment);
   }
 }
 
@@ -212,7 +196,7 @@ void space_interactions(const StepConstants& constants, const InteractionArrays&
   SpaceInteractionScratch<vector_fields<Law>()> scratch;
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    interaction_places<W, Advance>(c, p, rows, first, count, scratch);
+    locate_interactions<W, Advance>(c, p, rows, first, count, scratch);
     interaction_motion<Law, W, Advance>(c, p, rows, first, count, scratch);
     interaction_forces<Law, W, Advance>(p, first, count, scratch);
   }

@@ -1,4 +1,4 @@
-// What the pair loops of discs and spheres share: traits, loading grain rows by columns, small vectors of lanes.
+// What the pair loops share: traits, loading grain rows by columns, the columns that passes hand on.
 //
 // A pair loop goes from grain rows to force rows, W listed pairs at a time, a chunk of pairs in passes: the rows of the
 // two grains to columns, place and motion, the contact law. The passes hand columns on through a scratch buffer. In one
@@ -14,20 +14,21 @@
 // Torques act at r - delta/2 for all of them. In 2D the tangent is t = (-n_y, n_x) and all moments lie along z.
 #pragma once
 
-#include "rvelab/lanes/vectors.hpp"
-#include "rvelab/solver/kernels/configuration.hpp"
+#include "rvelab/solver/kernels/motion.hpp"
 
 namespace rvelab {
 namespace {
 
-/// What a pair loop is compiled for beside its law.
-template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_,
+/// What a pair loop is compiled for beside its law. `Foreign`: with the slip of another code; StepConstants::slip says
+/// which. These serve comparison: a branch in their loops saves a kernel for each.
+template <int W_, bool Rolling_, bool Foreign_, bool Dashpot_, bool Advance_,
           HertzRadius hertz_radius_ = HertzRadius::equivalent>
 struct PairTraits {
   static constexpr int W = W_;
   static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_;
   static constexpr bool Ledger = W == 1 && Advance;  ///< adds up what contacts lose, where a Dissipation is handed in
-  static constexpr Slip slip = slip_;
+  static constexpr bool Foreign = Foreign_;
+  static constexpr bool Moves = Advance || Dashpot;  ///< uses relative velocities
   static constexpr bool Curvature = hertz_radius_ == HertzRadius::curvature;
 };
 
@@ -57,24 +58,30 @@ inline __attribute__((always_inline)) typename Lanes<W>::Quad quad_at(const doub
   return load_as<typename Lanes<W>::Quad>(from);
 }
 
-/// First Quad of the grain row of j minus that of i, as columns.
-template <int W>
-inline __attribute__((always_inline)) void gather_differences(const double* rows, const std::int32_t* i,
-                                                              const std::int32_t* j, typename Lanes<W>::V* columns) {
+/// The first D of four doubles of the grain row of j minus those of i, and what follows them there.
+template <int W, int D>
+inline __attribute__((always_inline)) Vec<typename Lanes<W>::V, D> gather_differences(
+    const double* rows, const std::int32_t* i, const std::int32_t* j, typename Lanes<W>::V* following = nullptr) {
   using L = Lanes<W>;
   typename L::Quad quads[W];
+  typename L::V columns[4];
   for (int k = 0; k < W; ++k) quads[k] = L::sub(quad_at<W>(rows + j[k]), quad_at<W>(rows + i[k]));
   L::transpose(quads, columns);
+  if (following != nullptr)
+    for (int k = D; k < 4; ++k) following[k - D] = columns[k];
+  return first_of<D>(columns);
 }
 
-/// Places {x, y} of discs j less those of i, as two columns.
+/// Positions in the plane of j less those of i, without what follows them.
 template <int W>
-inline __attribute__((always_inline)) void gather_place_differences(const double* rows, const std::int32_t* i,
-                                                                    const std::int32_t* j,
-                                                                    typename Lanes<W>::V* columns) {
+inline __attribute__((always_inline)) Vec<typename Lanes<W>::V, 2> gather_position_differences(const double* rows,
+                                                                                               const std::int32_t* i,
+                                                                                               const std::int32_t* j) {
   V2 differences[W];
+  typename Lanes<W>::V columns[2];
   for (int k = 0; k < W; ++k) differences[k] = load_as<V2>(rows + j[k]) - load_as<V2>(rows + i[k]);
   Lanes<W>::transpose_pairs(differences, columns);
+  return {columns[0], columns[1]};
 }
 
 /// Spins of discs, as a column.
@@ -128,20 +135,42 @@ struct alignas(64) ScratchColumn {
 };
 
 /// A vector quantity of every pair, or grain, of a chunk.
-struct TripleColumn {
-  ScratchColumn x, y, z;
+template <int D>
+struct VecColumn {
+  ScratchColumn along[D];
 
   template <class V>
-  inline __attribute__((always_inline)) void store(long at, const Triple<V>& value) {
-    store_as(x.at + at, value.x);
-    store_as(y.at + at, value.y);
-    store_as(z.at + at, value.z);
+  inline __attribute__((always_inline)) void store(long at, const Vec<V, D>& value) {
+    store_as(along[0].at + at, value.x);
+    store_as(along[1].at + at, value.y);
+    if constexpr (D == 3) store_as(along[2].at + at, value.z);
   }
   template <class V>
-  inline __attribute__((always_inline)) Triple<V> load(long at) const {
-    return {load_as<V>(x.at + at), load_as<V>(y.at + at), load_as<V>(z.at + at)};
+  inline __attribute__((always_inline)) Vec<V, D> load(long at) const {
+    if constexpr (D == 2)
+      return {load_as<V>(along[0].at + at), load_as<V>(along[1].at + at)};
+    else
+      return {load_as<V>(along[0].at + at), load_as<V>(along[1].at + at), load_as<V>(along[2].at + at)};
   }
 };
+using TripleColumn = VecColumn<3>;
+
+/// The loop over pairs of a shape, a run at a time: located, then updated by `Update` (plane.hpp, space.hpp).
+template <class Shape, class T, class Update>
+void pair_loop(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
+               Dissipation* dissipation) {
+  // Copies that no store can change: else every store would make the compiler read all pointers again.
+  const StepConstants c = constants;
+  const PairArrays p = arrays;
+  typename Shape::Scratch scratch;
+  constexpr int narrow = T::W < 4 ? T::W : 4;
+  for (PairRun run{begin, 0, begin}; run.next < end;) {
+    run = next_run(p, run.next, end, [&](long at) { return Shape::template may_touch<narrow>(c, p, rows, at); });
+    Shape::template locate<T>(c, p, rows, run.first, run.count, scratch);
+    Update::run(c, p, rows, run.first, run.count, scratch, dissipation);
+  }
+}
+
 /// The normal force, no smaller than where the surfaces press no more.
 template <class Law, class V>
 inline __attribute__((always_inline)) V without_tension(V normal, V law_constant) {

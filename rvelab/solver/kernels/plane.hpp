@@ -14,7 +14,8 @@ namespace {
 /// Geometry and motion of W pairs.
 template <class V>
 struct PlaneContact {
-  V nx, ny, overlap;
+  Vec<V, 2> n;
+  V overlap;
   V lever_i, lever_j;          ///< torque of a force of 1 along t, m
   V slip_rate = {};            ///< velocity of j less that of i along t where they touch, m/s
   V spin_difference = {};      ///< w_j - w_i, rad/s (rolling)
@@ -22,32 +23,6 @@ struct PlaneContact {
   V turn_i = {}, turn_j = {};  ///< torque of a force of 1 along n, m (shapes that are not round)
   V radius_ratio = {};         ///< R*/r* (Hertz's radius from curvature)
 };
-
-/// Branches {x, y} of pairs, from the places in the cell of j less those of i.
-template <class V>
-inline __attribute__((always_inline)) void add_image_in_plane(const StepConstants& c, const PairArrays& p, long at,
-                                                              V& x, V& y) {
-  if (!p.shifted[std::size_t(at) / 8]) return;
-  const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-  x = x + (c.lattice.xx * image_x + c.lattice.xy * image_y);
-  y = y + c.lattice.yy * image_y;
-}
-
-/// Places and velocities of j less those of i, and both spins, of W pairs, from grain rows to columns k .. k + W - 1.
-template <class T, int W, class Scratch>
-inline __attribute__((always_inline)) void motion_to_columns(const double* rows, const std::int32_t (&i)[W],
-                                                             const std::int32_t (&j)[W], long k, Scratch& out) {
-  typename Lanes<W>::V d[4];
-  gather_differences<W>(rows, i, j, d);
-  store_as(out.dx.at + k, d[0]);
-  store_as(out.dy.at + k, d[1]);
-  if constexpr (T::Advance || T::Dashpot) {
-    store_as(out.du.at + k, d[2]);
-    store_as(out.dv.at + k, d[3]);
-    store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
-    store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
-  }
-}
 
 template <class Shape, class Law, class T>
 inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, const PairArrays& p, long first,
@@ -143,27 +118,21 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
       torque_j = torque_j + moment;
       torque_i = torque_i - moment;
     }
-    const V columns[4] = {contact.nx * normal - contact.ny * total, contact.ny * normal + contact.nx * total, torque_j,
-                          torque_i};
-    rows_of<W>(columns, p.force + 4 * at, 4);
+    const Vec<V, 2>& n = contact.n;
+    const V columns[4] = {n.x * normal - n.y * total, n.y * normal + n.x * total, torque_j, torque_i};
+    rows_of<W>(columns, p.force + force_row_length(2) * at, force_row_length(2));
   }
 }
 
-/// The pair loop of a shape in the plane.
+/// The passes over a run of pairs of a shape, after they are located.
 template <class Shape, class Law, class T>
-void plane_pairs(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
-                 Dissipation* dissipation) {
-  // Copies that no store can change: else every store would make the compiler read all pointers again.
-  const StepConstants c = constants;
-  const PairArrays p = arrays;
-  typename Shape::Scratch scratch;
-  constexpr int narrow = T::W < 4 ? T::W : 4;
-  for (PairRun run{begin, 0, begin}; run.next < end;) {
-    run = next_run(p, run.next, end, [&](long at) { return Shape::template may_touch<narrow>(c, p, rows, at); });
-    Shape::template locate<T>(c, p, rows, run.first, run.count, scratch);
-    plane_forces<Shape, Law, T>(c, p, run.first, run.count, scratch, dissipation);
+struct PlaneUpdate {
+  static inline __attribute__((always_inline)) void run(const StepConstants& c, const PairArrays& p, const double*,
+                                                        long first, long count, typename Shape::Scratch& scratch,
+                                                        Dissipation* dissipation) {
+    plane_forces<Shape, Law, T>(c, p, first, count, scratch, dissipation);
   }
-}
+};
 
 }  // namespace
 }  // namespace rvelab

@@ -38,7 +38,7 @@ template <class Shape, class Law, class T>
 inline __attribute__((always_inline)) void space_motion(const StepConstants& c, const PairArrays& p, const double* rows,
                                                         long first, long count, typename Shape::Scratch& s) {
   using V = typename Lanes<T::W>::V;
-  constexpr bool twist = T::slip != Slip::full_radius;
+  const bool twist = !T::Foreign || c.slip != Slip::full_radius;
   const V zero = V{};
   for (long k = 0; k < count; k += T::W) {
     const long at = first + k;
@@ -53,7 +53,7 @@ inline __attribute__((always_inline)) void space_motion(const StepConstants& c, 
       store_as(s.root.at + k, root);
     }
     V mean_twist = zero;
-    if constexpr (T::Advance || T::Dashpot) {
+    if constexpr (T::Moves) {
       const SpaceMotion<V> motion = Shape::template motion<T>(c, p, rows, at, n, k, s);
       s.velocity.store(k, motion.slip_rate);
       if constexpr (T::Dashpot) store_as(s.opening.at + k, motion.opening);
@@ -63,11 +63,11 @@ inline __attribute__((always_inline)) void space_motion(const StepConstants& c, 
       if constexpr (Law::stores_root_overlap)
         store_as(s.carried.at + k, Law::carried(root, load_as<V>(p.root_overlap + at), c.unload_rescale));
       const V angle = mean_twist * c.dt;
-      const TurnedHistory<V> tangential = turned_history(load_triple<V>(p.tangential, at), n, angle, twist);
+      const TurnedHistory<V> tangential = turned_history(load_vec<V>(p.tangential, at), n, angle, twist);
       s.tangential.store(k, tangential.vector);
       store_as(s.restoring.at + k, tangential.factor);
       if constexpr (T::Rolling) {
-        const TurnedHistory<V> moment = turned_history(load_triple<V>(p.moment, at), n, angle, twist);
+        const TurnedHistory<V> moment = turned_history(load_vec<V>(p.moment, at), n, angle, twist);
         s.moment.store(k, moment.vector);
         store_as(s.restoring_moment.at + k, moment.factor);
       }
@@ -95,7 +95,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
     if constexpr (Law::stores_root_overlap && T::Advance) factor = load_as<V>(s.carried.at + k);
     V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, law_constant);
     Triple<V> slip_rate = none;
-    if constexpr (T::Advance || T::Dashpot) slip_rate = s.velocity.template load<V>(k);
+    if constexpr (T::Moves) slip_rate = s.velocity.template load<V>(k);
     V c_normal = zero, opening = zero;
     if constexpr (T::Dashpot) {
       opening = load_as<V>(s.opening.at + k);
@@ -104,7 +104,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       if (c.no_tension) normal = without_tension<Law>(normal, law_constant);
     }
     const V pressing = Law::pressing_force(normal, law_constant);
-    Triple<V> tangential = load_triple<V>(p.tangential, at);
+    Triple<V> tangential = load_vec<V>(p.tangential, at);
     const V kt = Law::tangential_stiffness(load_as<V>(p.kt + at), root);
     [[maybe_unused]] V last_root = zero;
     if constexpr (Law::stores_root_overlap && T::Ledger) last_root = load_as<V>(p.root_overlap + at);
@@ -115,7 +115,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       const Triple<V> carried = times(factor, times(load_as<V>(s.restoring.at + k), s.tangential.template load<V>(k)));
       const Triple<V> trial = plus(carried, -(kt * c.dt), slip_rate);
       tangential = chosen(touching, within_friction<T::Dashpot>(trial, limit, viscous, slip_rate), none);
-      store_triple(p.tangential, at, tangential);
+      store_vec(p.tangential, at, tangential);
       if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
@@ -133,7 +133,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
     if constexpr (T::Rolling && T::Advance) {
       const V kr = Law::tangential_stiffness(load_as<V>(p.kr + at), root);
       [[maybe_unused]] Triple<V> before = none;
-      if constexpr (T::Ledger) before = load_triple<V>(p.moment, at);
+      if constexpr (T::Ledger) before = load_vec<V>(p.moment, at);
       const Triple<V> carried =
           times(factor, times(load_as<V>(s.restoring_moment.at + k), s.moment.template load<V>(k)));
       const Triple<V> n = s.normal.template load<V>(k);
@@ -142,7 +142,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       const Triple<V> trial = plus(carried, -(kr * c.dt), bending);
       const V pushing = (pressing > 0.0) ? pressing : zero;
       const Triple<V> moment = chosen(touching, capped_moment(trial, load_as<V>(p.moment_cap + at) * pushing), none);
-      store_triple(p.moment, at, moment);
+      store_vec(p.moment, at, moment);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
           const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
@@ -168,34 +168,30 @@ inline __attribute__((always_inline)) void space_force_rows(const PairArrays& p,
     if constexpr (T::Dashpot)
       along = s.velocity.template load<V>(k);
     else
-      along = load_triple<V>(p.tangential, at);
+      along = load_vec<V>(p.tangential, at);
     const Triple<V> torque = cross(n, along);
     const V first_half[4] = {n.x * normal + along.x, n.y * normal + along.y, n.z * normal + along.z, half_overlap};
     const V second_half[4] = {torque.x, torque.y, torque.z, V{}};
-    rows_of<W>(first_half, p.force + 8 * at, 8);
-    rows_of<W>(second_half, p.force + 8 * at + 4, 8);
+    constexpr int length = force_row_length(3);
+    rows_of<W>(first_half, p.force + length * at, length);
+    rows_of<W>(second_half, p.force + length * at + 4, length);
   }
 }
 
-/// The pair loop of a shape in space.
+/// The passes over a run of pairs of a shape, after they are located.
 template <class Shape, class Law, class T>
-void space_pairs(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
-                 Dissipation* dissipation) {
-  const StepConstants c = constants;
-  const PairArrays p = arrays;
-  typename Shape::Scratch scratch;
-  constexpr int narrow = T::W < 4 ? T::W : 4;
-  for (PairRun run{begin, 0, begin}; run.next < end;) {
-    run = next_run(p, run.next, end, [&](long at) { return Shape::template may_touch<narrow>(c, p, rows, at); });
-    Shape::template locate<T>(c, p, rows, run.first, run.count, scratch);
-    space_motion<Shape, Law, T>(c, p, rows, run.first, run.count, scratch);
-    space_forces<Shape, Law, T>(c, p, run.first, run.count, scratch, dissipation);
+struct SpaceUpdate {
+  static inline __attribute__((always_inline)) void run(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                        long first, long count, typename Shape::Scratch& scratch,
+                                                        Dissipation* dissipation) {
+    space_motion<Shape, Law, T>(c, p, rows, first, count, scratch);
+    space_forces<Shape, Law, T>(c, p, first, count, scratch, dissipation);
     if constexpr (Shape::By::round)
-      space_force_rows<Shape, T>(p, run.first, run.count, scratch);
+      space_force_rows<Shape, T>(p, first, count, scratch);
     else
-      Shape::template force_rows<T>(p, run.first, run.count, scratch);
+      Shape::template force_rows<T>(p, first, count, scratch);
   }
-}
+};
 
 }  // namespace
 }  // namespace rvelab

@@ -10,43 +10,27 @@ struct SphereScratch : SpaceScratch {
   ScratchColumn length, radii;
 };
 
-/// Branch of pairs, from the places in the cell of j less that of i.
-template <class V>
-inline __attribute__((always_inline)) Triple<V> branch_of(const StepConstants& c, const PairArrays& p, long at,
-                                                          const Triple<V>& d) {
-  if (!p.shifted[std::size_t(at) / 8]) return d;
-  const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-  const V image_z = load_as<V>(p.image[2] + at);
-  return {d.x + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
-          d.y + (c.lattice.yy * image_y + c.lattice.yz * image_z), d.z + c.lattice.zz * image_z};
-}
-
 /// Branch, normal and the motion of the centres, from grain rows in one pass as those of discs (spheres: 0.97 of
 /// the time with four lanes, 0.99 with eight).
 template <class T>
-inline __attribute__((always_inline)) void sphere_places(const StepConstants& c, const PairArrays& p,
-                                                         const double* rows, long first, long count, SphereScratch& s) {
+inline __attribute__((always_inline)) void locate_spheres(const StepConstants& c, const PairArrays& p,
+                                                          const double* rows, long first, long count,
+                                                          SphereScratch& s) {
   constexpr int W = T::W;
   using V = typename Lanes<W>::V;
-  const double half_dt = 0.5 * c.dt;
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
     const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
     V d[4];
     gather_columns<W>(rows, i, j, 0, quad<W>(-1.0, -1.0, -1.0, 1.0), d);
-    const Triple<V> b = branch_of<V>(c, p, at, {d[0], d[1], d[2]});
+    const Triple<V> b = branch_of(c, p, at, first_of<3>(d));
     const V length = square_root(dot(b, b));
     s.normal.store(k, times(1.0 / length, b));
     store_as(s.length.at + k, length);
     store_as(s.radii.at + k, d[3]);
-    if constexpr (T::Advance || T::Dashpot) {
+    if constexpr (T::Moves) {
       if constexpr (W == 8) read_memory_again();  // as in discs.hpp
-      V u[4];
-      gather_differences<W>(rows + 4, i, j, u);
-      const Triple<V> v = {u[0], u[1], u[2]};
-      const Triple<V> px = plus(b, V{} - half_dt, v);
-      s.velocity.store(k, Triple<V>{v.x + (c.rate.xx * px.x + (c.rate.xy * px.y + c.rate.xz * px.z)),
-                                    v.y + (c.rate.yy * px.y + c.rate.yz * px.z), v.z + c.rate.zz * px.z});
+      s.velocity.store(k, relative_velocity(c, b, gather_differences<W, 3>(rows + 4, i, j)));
     }
   }
 }
@@ -59,7 +43,7 @@ struct Spheres {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    sphere_places<T>(c, p, rows, first, count, s);
+    locate_spheres<T>(c, p, rows, first, count, s);
   }
   template <class V>
   static inline __attribute__((always_inline)) V overlap(long k, const Scratch& s) {
@@ -75,19 +59,18 @@ struct Spheres {
     V a[4], b[4];
     ColumnsOf<T::W>::load([=](int lane) { return rows + i[lane] + 8; }, a);
     ColumnsOf<T::W>::load([=](int lane) { return rows + j[lane] + 8; }, b);
-    if constexpr (T::Rolling && T::Advance)
-      s.spin_difference.store(k, Triple<V>{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+    if constexpr (T::Rolling && T::Advance) s.spin_difference.store(k, first_of<3>(b) - first_of<3>(a));
     const V radii = load_as<V>(s.radii.at + k), length = load_as<V>(s.length.at + k), one = V{} + 1.0;
     // The mean spin of the cell is added to both grains.
     const Triple<V> u = s.velocity.load<V>(k);
-    const Triple<V> spins = {(a[0] + b[0]) + 2.0 * c.spin[0], (a[1] + b[1]) + 2.0 * c.spin[1],
-                             (a[2] + b[2]) + 2.0 * c.spin[2]};
+    const Triple<V> spins = with_cell_spin(c, first_of<3>(a) + first_of<3>(b), 2.0);
     Triple<V> arms = {(b[3] * b[0] + a[3] * a[0]) + c.spin[0] * radii, (b[3] * b[1] + a[3] * a[1]) + c.spin[1] * radii,
                       (b[3] * b[2] + a[3] * a[2]) + c.spin[2] * radii};
     const V opening = dot(n, u);
     Triple<V> along = plus(u, -opening, n);
-    if constexpr (T::slip == Slip::full_radius_ratcheting) along = times(radii / length, along);
-    if constexpr (T::slip == Slip::consistent) arms = plus(arms, -(0.5 * (radii - length)), spins);
+    if constexpr (!T::Foreign) arms = plus(arms, -(0.5 * (radii - length)), spins);
+    if constexpr (T::Foreign)
+      if (c.slip == Slip::full_radius_ratcheting) along = times(radii / length, along);
     return {plus(along, -one, cross(arms, n)), opening, 0.5 * dot(n, spins)};
   }
   template <int W>
@@ -105,7 +88,7 @@ inline __attribute__((always_inline)) bool Spheres::may_touch(const StepConstant
   for (long at = first; at < first + 8; at += W) {
     V d[4];
     gather_columns<W>(rows, p.row_i + at, p.row_j + at, 0, quad<W>(-1.0, -1.0, -1.0, 1.0), d);
-    const Triple<V> b = branch_of<V>(c, p, at, {d[0], d[1], d[2]});
+    const Triple<V> b = branch_of(c, p, at, first_of<3>(d));
     touching = touching | (dot(b, b) < d[3] * d[3]);
   }
   return any_of(touching);

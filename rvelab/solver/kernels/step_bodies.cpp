@@ -14,8 +14,8 @@ namespace {
 
 /// `By`: the shape, like Disc.
 template <class By, int W>
-void set_body_kernels(const KernelConfiguration& key, Kernels& kernels) {
-  kernels.gather_on_members = key.rolling ? &gather_on_members<By, W, true> : &gather_on_members<By, W, false>;
+void set_body_kernels(Kernels& kernels) {
+  kernels.gather_on_members = &gather_on_members<By, W>;
   kernels.move_bodies[0] = &move_bodies<By, W, false>;
   kernels.move_bodies[1] = &move_bodies<By, W, true>;
   if constexpr (By::round) kernels.place_members = &place_members<W, By::dimension>;
@@ -31,7 +31,7 @@ void BodyKernels::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
 #else
     constexpr bool has_kernels = By::round || By::rigid;
 #endif
-    if constexpr (has_kernels) set_body_kernels<By, RVELAB_LANES>(key, kernels);
+    if constexpr (has_kernels) set_body_kernels<By, RVELAB_LANES>(kernels);
   });
 }
 

@@ -36,41 +36,43 @@ constexpr bool has_kernels =
 template <class Pairs, class Law, class T>
 constexpr PairKernel pair_kernel() {
   if constexpr (Pairs::By::dimension == 2)
-    return &plane_pairs<Pairs, Law, T>;
+    return &pair_loop<Pairs, T, PlaneUpdate<Pairs, Law, T>>;
   else
-    return &space_pairs<Pairs, Law, T>;
+    return &pair_loop<Pairs, T, SpaceUpdate<Pairs, Law, T>>;
 }
 
 template <class Pairs, class T>
 constexpr GrainKernel grain_kernel() {
   if constexpr (Pairs::By::dimension == 2)
-    return &plane_grains<typename Pairs::Rows, T>;
+    return &grain_loop<PlaneGrains<typename Pairs::Rows, T>>;
   else
-    return &sphere_grains<T>;
+    return &grain_loop<SphereGrains<T>>;
 }
+
+/// Which kernels there are in more than one lane; where there are none the scalar reference does the work (README.md
+/// says for how much). The slip of other codes serves comparison, and no recipe gives these two laws to grains that are
+/// not round.
+template <class Pairs, class Force>
+constexpr bool has_lanes = Pairs::By::round ||
+                           (!std::is_same_v<Force, LinearAdhesiveForce> && !std::is_same_v<Force, HertzStiffnessForce>);
 
 template <class Pairs, int W, bool Advance, class Law, bool Rolling, bool Dashpot>
 PairKernel by_slip(const KernelConfiguration& key) {
-  // The conventions of other codes are those of round grains: a specimen of others has none of them.
+  // In space a force row holds no moment: where nothing advances, rolling makes no difference.
+  constexpr bool rolling = Rolling && (Advance || Pairs::By::dimension == 2);
   if constexpr (!Pairs::By::round) {
     if constexpr (Law::has_hertz_radius && Pairs::By::has_hertz_curvature) {
       constexpr auto curvature = HertzRadius::curvature;
       if (key.hertz_radius == curvature)
-        return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, curvature>>();
+        return pair_kernel<Pairs, Law, PairTraits<W, rolling, false, Dashpot, Advance, curvature>>();
     }
-    return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
+  } else if (key.slip != Slip::consistent) {
+    // Without motion there is no slip.
+    if constexpr (W > 1 || fewer_kernels) return nullptr;
+    if constexpr (W == 1 && !fewer_kernels && (Advance || Dashpot))
+      return pair_kernel<Pairs, Law, PairTraits<W, rolling, true, Dashpot, Advance>>();
   }
-  // Without motion there is no slip. The conventions of other codes serve comparison with these and are compiled for
-  // narrow lanes alone (choice.cpp).
-  if constexpr (fewer_kernels) {
-    if (key.slip != Slip::consistent) return nullptr;
-  } else if constexpr (W <= 2 && (Advance || Dashpot)) {
-    if (key.slip == Slip::full_radius)
-      return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance>>();
-    if (key.slip == Slip::full_radius_ratcheting)
-      return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::full_radius_ratcheting, Dashpot, Advance>>();
-  }
-  return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
+  return pair_kernel<Pairs, Law, PairTraits<W, rolling, false, Dashpot, Advance>>();
 }
 
 template <class Pairs, int W, bool Advance, class Law>
@@ -88,24 +90,27 @@ PairKernel by_features(const KernelConfiguration& key) {
   }
 }
 
+/// Null where there is none.
 template <class Pairs, int W, bool Advance>
 PairKernel pair_kernel_for(const KernelConfiguration& key) {
   return with_law(key.law, [&](auto law) -> PairKernel {
-    if constexpr (has_kernels<decltype(law)>) return by_features<Pairs, W, Advance, typename decltype(law)::Force>(key);
+    using Force = typename decltype(law)::Force;
+    if constexpr (has_kernels<decltype(law)> && (W == 1 || has_lanes<Pairs, Force>))
+      return by_features<Pairs, W, Advance, Force>(key);
     return nullptr;
   });
 }
 
-template <class Pairs, int W, bool Rolling>
+template <class Pairs, int W>
 void set_grain_kernels(Kernels& kernels) {
   constexpr auto none = KernelDamping::none, vector = KernelDamping::vector, component = KernelDamping::component;
-  kernels.quasi_static[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, none>>();
-  kernels.quasi_static[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, vector>>();
-  kernels.quasi_static[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, component>>();
+  kernels.quasi_static[0] = grain_kernel<Pairs, GrainTraits<W, false, none>>();
+  kernels.quasi_static[1] = grain_kernel<Pairs, GrainTraits<W, false, vector>>();
+  kernels.quasi_static[2] = grain_kernel<Pairs, GrainTraits<W, false, component>>();
   if constexpr (fewer_kernels) return;
-  kernels.at_rate[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, none>>();
-  kernels.at_rate[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, vector>>();
-  kernels.at_rate[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
+  kernels.at_rate[0] = grain_kernel<Pairs, GrainTraits<W, true, none>>();
+  kernels.at_rate[1] = grain_kernel<Pairs, GrainTraits<W, true, vector>>();
+  kernels.at_rate[2] = grain_kernel<Pairs, GrainTraits<W, true, component>>();
 }
 
 template <int dimension, class Law, int W, bool Advance>
@@ -126,10 +131,11 @@ void set_interaction_kernels(Kernels& kernels, TypeList<Each...>) {
   }
 }
 
-/// The advancing kernels of one shape at W lanes; of the scalar reference those that do not advance too.
+/// The advancing kernels of one shape at W lanes; of the scalar reference those that do not advance too. Where there is
+/// no pair kernel in lanes, that of the scalar reference, which is set first, stays.
 template <class Pairs, int W>
 void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
-  kernels.pairs = pair_kernel_for<Pairs, W, true>(key);
+  if (const PairKernel pairs = pair_kernel_for<Pairs, W, true>(key)) kernels.pairs = pairs;
   if constexpr (W == 1) {
     kernels.pairs_with_losses = kernels.pairs;
     kernels.evaluate = pair_kernel_for<Pairs, W, false>(key);
@@ -137,14 +143,7 @@ void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
   }
   if constexpr (Pairs::By::round && !fewer_kernels)
     set_interaction_kernels<Pairs::By::dimension, W>(kernels, InteractionLaws{});
-  // Bodies have their own step (step_bodies.cpp).
-  if constexpr (Pairs::By::rigid) {
-    kernels.lanes = W;
-    return;
-  } else if (key.rolling)
-    set_grain_kernels<Pairs, W, true>(kernels);
-  else
-    set_grain_kernels<Pairs, W, false>(kernels);
+  if constexpr (!Pairs::By::rigid) set_grain_kernels<Pairs, W>(kernels);  // bodies: step_bodies.cpp
   kernels.lanes = W;
 }
 

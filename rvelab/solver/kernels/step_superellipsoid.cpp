@@ -12,15 +12,13 @@ void StepKernels<Shape::superellipsoid>::RVELAB_ISA([[maybe_unused]] const Kerne
                                                     [[maybe_unused]] Kernels& kernels) {
 #ifndef RVELAB_FEWER_KERNELS
   const bool curvature = key.hertz_radius == HertzRadius::curvature;
-  if (key.ellipsoids) {
-    set_kernels<SuperellipsoidPairs<true>, RVELAB_LANES>(key, kernels);
+  set_kernels<SuperellipsoidPairs, RVELAB_LANES>(key, kernels);
+  if (key.ellipsoids)
     kernels.places = curvature ? &superellipsoid_pair_places<RVELAB_LANES, true, true>
                                : &superellipsoid_pair_places<RVELAB_LANES, true, false>;
-  } else {
-    set_kernels<SuperellipsoidPairs<false>, RVELAB_LANES>(key, kernels);
+  else
     kernels.places = curvature ? &superellipsoid_pair_places<RVELAB_LANES, false, true>
                                : &superellipsoid_pair_places<RVELAB_LANES, false, false>;
-  }
 #endif
 }
 

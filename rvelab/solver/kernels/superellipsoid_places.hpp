@@ -4,12 +4,17 @@
 #pragma once
 
 #include "rvelab/contact/hertz_curvature.hpp"
+#include "rvelab/grains/turns.hpp"
 #include "rvelab/solver/kernels/space.hpp"
-#include "rvelab/solver/kernels/spheres.hpp"
 #include "rvelab/superellipsoid/ellipsoids.hpp"
 #include "rvelab/superellipsoid/lanes.hpp"
 
 namespace rvelab {
+
+/// searched_contact of two grain rows and the branch {x, y, z}: {overlap, n, point}. Compiled once, for one pair (the
+/// types of its formulas belong to the file that includes them).
+void search_contact(const double* row_i, const double* row_j, const double* branch, double* contact);
+
 namespace {
 
 /// Form and axes from a grain row (grains/superellipsoid.hpp): its columns 12 to 23, and the rolling radius.
@@ -27,11 +32,9 @@ struct SuperellipsoidColumns {
             rolling};
   }
   SuperellipsoidAxes<V> axes() const {
-    const V w = turn[0], x = turn[1], y = turn[2], z = turn[3];
-    const V xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y, wz = w * z;
-    return {{1.0 - 2.0 * (yy + zz), 2.0 * (xy + wz), 2.0 * (xz - wy)},
-            {2.0 * (xy - wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz + wx)},
-            {2.0 * (xz + wy), 2.0 * (yz - wx), 1.0 - 2.0 * (xx + yy)}};
+    const LaneAxes<V> of = axes_of(LaneTurn<V>{turn[0], {turn[1], turn[2], turn[3]}});
+    const Triple<V>&a = of.row[0], &b = of.row[1], &c = of.row[2];
+    return {{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}};
   }
 };
 template <int W>
@@ -56,10 +59,9 @@ inline __attribute__((always_inline)) SuperellipsoidPair<typename Lanes<W>::V> s
     const StepConstants& c, const PairArrays& p, const double* rows, long at) {
   using V = typename Lanes<W>::V;
   const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
-  V d[4];
-  gather_differences<W>(rows, i, j, d);
   const SuperellipsoidColumns<V> of_i = columns_of_shapes<W>(rows, i), of_j = columns_of_shapes<W>(rows, j);
-  return {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch_of<V>(c, p, at, {d[0], d[1], d[2]})};
+  const Triple<V> branch = branch_of(c, p, at, gather_differences<W, 3>(rows, i, j));
+  return {of_i.form(), of_j.form(), of_i.axes(), of_j.axes(), branch};
 }
 
 /// What the passes hand on.
@@ -76,7 +78,7 @@ inline __attribute__((always_inline)) void put_contacts(const Triple<V>& branch,
   s.normal.store(k, contacts.n);
   store_as(s.overlap.at + k, contacts.overlap);
   s.arm_i.store(k, chosen(touch, contacts.point, none));
-  s.arm_j.store(k, chosen(touch, plus(contacts.point, V{} - 1.0, branch), none));
+  s.arm_j.store(k, chosen(touch, contacts.point - branch, none));
 }
 
 /// Any W pairs of a chunk, by their numbers in it.
@@ -97,18 +99,13 @@ struct PairGroup {
   }
   template <class V>
   Triple<V> column(const TripleColumn& from) const {
-    using L = Lanes<W>;
-    return {L::collected([&](int lane) { return from.x.at[k[lane]]; }),
-            L::collected([&](int lane) { return from.y.at[k[lane]]; }),
-            L::collected([&](int lane) { return from.z.at[k[lane]]; })};
+    V columns[3];
+    for (int m = 0; m < 3; ++m) columns[m] = Lanes<W>::collected([&](int lane) { return from.along[m].at[k[lane]]; });
+    return first_of<3>(columns);
   }
   template <class V>
   void put(const Triple<V>& value, TripleColumn& to) const {
-    for (int lane = 0; lane < W; ++lane) {
-      to.x.at[k[lane]] = in_lane(value.x, lane);
-      to.y.at[k[lane]] = in_lane(value.y, lane);
-      to.z.at[k[lane]] = in_lane(value.z, lane);
-    }
+    for (int lane = 0; lane < W; ++lane) to.store(k[lane], in_lane(value, lane));
   }
 };
 
@@ -150,7 +147,7 @@ struct PairNumbers {
   }
 };
 
-/// Where a pair is looked for first the next time: where its direction goes on as it went since the last, in a place
+/// Where the search of a pair begins the next time: its direction, extrapolated linearly from the last two, in a cell
 /// of the grid. `last`: its direction now, of length 1, 0 where it has none (PairArrays::directions).
 template <class V>
 struct KeptDirections {
@@ -184,7 +181,7 @@ __attribute__((noinline)) void superellipsoid_places(const StepConstants& c, con
   const Triple<V> zero = {V{}, V{}, V{}};
   PairNumbers open, left;
   double decided[chunk_pairs];
-  // What a look leaves: where to look next, this time or the next.
+  // Updates the search direction: for the next evaluation of this sub-step or the first of the next.
   const auto kept_after = [&](const auto& look, const ContactsOf<V>& contacts, const Triple<V>& place,
                               KeptDirections<V>& kept) {
     KeptDirections<V> done = kept;
@@ -237,7 +234,7 @@ __attribute__((noinline)) void superellipsoid_places(const StepConstants& c, con
       const Mask touch = contacts.overlap > 0.0;
       group.put(contacts.n, s.normal);
       group.put(chosen(touch, contacts.point, zero), s.arm_i);
-      group.put(chosen(touch, plus(contacts.point, V{} - 1.0, branch), zero), s.arm_j);
+      group.put(chosen(touch, contacts.point - branch, zero), s.arm_j);
     }
   };
   for (int k = 0; k < steps_from_guess && open.count > 0; ++k) {
@@ -267,12 +264,13 @@ __attribute__((noinline)) void superellipsoid_places(const StepConstants& c, con
   for (long k = 0; k < open.count; ++k) left.at[left.count++] = open.at[k];
   in_groups(left, [&](const PairGroup<W>& group, const SuperellipsoidPair<V>& pair, KeptDirections<V>& kept, long) {
     ContactsOf<V> contacts;
-    if constexpr (Ellipsoids)
-      from_bodies(ellipsoids_of(pair), contacts, kept.place, [&](int lane) {
-        return searched_contact(superellipsoid_pair<1>(c, p, rows, first + group.k[lane]));
-      });
-    else
-      from_bodies(pair, contacts, kept.place);
+    from_bodies(searched_pair<Ellipsoids>(pair), contacts, kept.place, [&](int lane) {
+      const Triple<double> b = in_lane(pair.branch, lane);
+      const double between[3] = {b.x, b.y, b.z};
+      double found[7];
+      search_contact(rows + group.i[lane], rows + group.j[lane], between, found);
+      return ContactsOf<double>{found[0], {found[1], found[2], found[3]}, {found[4], found[5], found[6]}};
+    });
     kept.last = zero;
     return contacts;
   });
@@ -299,9 +297,9 @@ __attribute__((noinline)) void hertz_radii(const StepConstants& c, const PairArr
 
 /// What the kernels ask for: places, and R* where it is that of the curvature.
 template <int W, bool Ellipsoids, bool Curvature>
-inline __attribute__((always_inline)) void places_of(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                     long first, long count, double* directions,
-                                                     SuperellipsoidScratch& s) {
+inline __attribute__((always_inline)) void locate_superellipsoids(const StepConstants& c, const PairArrays& p,
+                                                                  const double* rows, long first, long count,
+                                                                  double* directions, SuperellipsoidScratch& s) {
   superellipsoid_places<W, Ellipsoids>(c, p, rows, first, count, directions, s);
   if constexpr (Curvature) hertz_radii<W, Ellipsoids>(c, p, rows, first, count, s);
 }

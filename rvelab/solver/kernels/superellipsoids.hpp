@@ -23,7 +23,7 @@ void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, con
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
     for (long k = 0; k < 8 * count; ++k) guesses[k] = p.directions[8 * first + k];
-    places_of<W, Ellipsoids, Curvature>(c, p, rows, first, count, guesses, s);
+    locate_superellipsoids<W, Ellipsoids, Curvature>(c, p, rows, first, count, guesses, s);
     for (long k = 0; k < count; k += W) {
       const Triple<V> n = s.normal.load<V>(k), point = s.arm_i.load<V>(k);
       V radius = {};
@@ -35,8 +35,37 @@ void superellipsoid_pair_places(const StepConstants& c, const PairArrays& p, con
   }
 }
 
-/// What the contact update in space (space.hpp) asks of a shape.
-template <bool Ellipsoids>
+/// Whether one of eight pairs is not shown to be apart: of ellipsoids by the direction in which the branch leaves that
+/// of the summed matrices.
+template <int W>
+__attribute__((noinline)) bool ellipsoids_may_touch(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                    long first) {
+  using V = typename Lanes<W>::V;
+  for (long at = first; at < first + 8; at += W) {
+    const EllipsoidPair<V> pair = ellipsoids_of(superellipsoid_pair<W>(c, p, rows, at));
+    const Triple<V> n = first_direction(pair);
+    const V heights = square_root(dot(n, times(pair.i, n))) + square_root(dot(n, times(pair.j, n)));
+    if (any_of(!(heights - dot(n, pair.branch) < -1e-12 * heights))) return true;
+  }
+  return false;
+}
+/// Of others by the direction kept, or the branch where there is none.
+template <int W>
+__attribute__((noinline)) bool superellipsoids_may_touch(const StepConstants& c, const PairArrays& p,
+                                                         const double* rows, long first) {
+  using V = typename Lanes<W>::V;
+  for (long at = first; at < first + 8; at += W) {
+    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, at);
+    const Triple<V> kept = triple_of<W>(p.directions + 8 * at, 8);
+    const auto has = dot(kept, kept) >= 0.25;
+    const OverlapAt<V> along = overlap_at(pair, chosen(has, kept, of_length_1(pair.branch)));
+    if (any_of(!(along.overlap < -1e-12 * (along.i.height + along.j.height)))) return true;
+  }
+  return false;
+}
+
+/// What the contact update in space (space.hpp) asks of a shape. StepConstants says whether all are ellipsoids: one
+/// branch a chunk, in loops that are the same for both.
 struct SuperellipsoidPairs {
   using By = SuperellipsoidGrain;
   using Scratch = SuperellipsoidScratch;
@@ -44,7 +73,11 @@ struct SuperellipsoidPairs {
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
                                                            const double* rows, long first, long count, Scratch& s) {
-    places_of<T::W, Ellipsoids, T::Curvature>(c, p, rows, first, count, p.directions + 8 * first, s);
+    double* directions = p.directions + 8 * first;
+    if (c.ellipsoids)
+      locate_superellipsoids<T::W, true, T::Curvature>(c, p, rows, first, count, directions, s);
+    else
+      locate_superellipsoids<T::W, false, T::Curvature>(c, p, rows, first, count, directions, s);
   }
   /// R*/r*.
   template <class V>
@@ -61,24 +94,17 @@ struct SuperellipsoidPairs {
                                                                      long k, Scratch& s) {
     constexpr int W = T::W;
     const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
-    const double half_dt = 0.5 * c.dt;
-    V u[4], a[4], b[4];
-    gather_differences<W>(rows + 4, i, j, u);
+    V a[4], b[4];
     ColumnsOf<W>::load([=](int lane) { return rows + i[lane] + 8; }, a);
     ColumnsOf<W>::load([=](int lane) { return rows + j[lane] + 8; }, b);
-    if constexpr (T::Rolling && T::Advance)
-      s.spin_difference.store(k, Triple<V>{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
-    const V one = V{} + 1.0;
-    const Triple<V> v = {u[0], u[1], u[2]}, px = plus(s.branch.load<V>(k), V{} - half_dt, v);
-    const Triple<V> centres = {v.x + (c.rate.xx * px.x + (c.rate.xy * px.y + c.rate.xz * px.z)),
-                               v.y + (c.rate.yy * px.y + c.rate.yz * px.z), v.z + c.rate.zz * px.z};
+    if constexpr (T::Rolling && T::Advance) s.spin_difference.store(k, first_of<3>(b) - first_of<3>(a));
+    const Triple<V> centres = relative_velocity(c, s.branch.load<V>(k), gather_differences<W, 3>(rows + 4, i, j));
     // The mean spin of the cell is added to both grains.
-    const Triple<V> wi = {a[0] + c.spin[0], a[1] + c.spin[1], a[2] + c.spin[2]},
-                    wj = {b[0] + c.spin[0], b[1] + c.spin[1], b[2] + c.spin[2]};
+    const Triple<V> wi = with_cell_spin(c, first_of<3>(a), 1.0), wj = with_cell_spin(c, first_of<3>(b), 1.0);
     const Triple<V> by_j = cross(wj, s.arm_j.load<V>(k)), by_i = cross(wi, s.arm_i.load<V>(k));
-    const Triple<V> at_point = plus(plus(centres, one, by_j), -one, by_i);
+    const Triple<V> at_point = (centres + by_j) - by_i;
     const V opening = dot(n, at_point);
-    return {plus(at_point, -opening, n), opening, 0.5 * dot(n, plus(wi, one, wj))};
+    return {plus(at_point, -opening, n), opening, 0.5 * dot(n, wi + wj)};
   }
   /// Force on j and torque on j; the torque on i stands in PairArrays::solid.
   template <class T>
@@ -89,46 +115,21 @@ struct SuperellipsoidPairs {
     for (long k = 0; k < count; k += W) {
       const long at = first + k;
       const V normal = load_as<V>(s.normal_force.at + k);
-      const Triple<V> along = T::Dashpot ? s.velocity.load<V>(k) : load_triple<V>(p.tangential, at);
+      const Triple<V> along = T::Dashpot ? s.velocity.load<V>(k) : load_vec<V>(p.tangential, at);
       const Triple<V> f = plus(along, normal, s.normal.load<V>(k));
       const Triple<V> on_j = cross(s.arm_j.load<V>(k), f), on_i = cross(f, s.arm_i.load<V>(k));
-      const V force[4] = {f.x, f.y, f.z, V{}}, torque_j[4] = {on_j.x, on_j.y, on_j.z, V{}},
-              torque_i[4] = {on_i.x, on_i.y, on_i.z, V{}};
-      rows_of<W>(force, p.force + 8 * at, 8);
-      rows_of<W>(torque_j, p.force + 8 * at + 4, 8);
-      rows_of<W>(torque_i, p.solid + 8 * at + 4, 8);
+      constexpr int length = force_row_length(3);
+      rows_of<W>(f, V{}, p.force + length * at, length);
+      rows_of<W>(on_j, V{}, p.force + length * at + 4, length);
+      rows_of<W>(on_i, V{}, p.solid + length * at + 4, length);
     }
   }
   template <int W>
-  static bool may_touch(const StepConstants& c, const PairArrays& p, const double* rows, long first);
-};
-
-/// Whether one of eight pairs is not shown to be apart: of ellipsoids by the direction in which the branch leaves that
-/// of the summed matrices, of others by the direction kept, or the branch where there is none.
-template <bool Ellipsoids>
-template <int W>
-__attribute__((noinline)) bool SuperellipsoidPairs<Ellipsoids>::may_touch(const StepConstants& c, const PairArrays& p,
-                                                                          const double* rows, long first) {
-  using V = typename Lanes<W>::V;
-  for (long at = first; at < first + 8; at += W) {
-    const SuperellipsoidPair<V> pair = superellipsoid_pair<W>(c, p, rows, at);
-    if constexpr (Ellipsoids) {
-      const EllipsoidMatrix<V> i = ellipsoid_matrix(pair.form_i.half, pair.axes_i),
-                               j = ellipsoid_matrix(pair.form_j.half, pair.axes_j);
-      const Triple<V> n = first_direction(EllipsoidPair<V>{i, j, pair.branch});
-      const V heights = square_root(dot(n, times(i, n))) + square_root(dot(n, times(j, n)));
-      if (any_of(!(heights - dot(n, pair.branch) < -1e-12 * heights))) return true;
-    } else {
-      V guess[4];
-      columns_of<W>(p.directions + 8 * at, 8, guess);
-      const Triple<V> kept = {guess[0], guess[1], guess[2]};
-      const auto has = dot(kept, kept) >= 0.25;
-      const OverlapAt<V> along = overlap_at(pair, chosen(has, kept, of_length_1(pair.branch)));
-      if (any_of(!(along.overlap < -1e-12 * (along.i.height + along.j.height)))) return true;
-    }
+  static inline __attribute__((always_inline)) bool may_touch(const StepConstants& c, const PairArrays& p,
+                                                              const double* rows, long first) {
+    return c.ellipsoids ? ellipsoids_may_touch<W>(c, p, rows, first) : superellipsoids_may_touch<W>(c, p, rows, first);
   }
-  return false;
-}
+};
 
 }  // namespace
 }  // namespace rvelab

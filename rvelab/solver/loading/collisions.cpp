@@ -134,7 +134,7 @@ struct GrainMotion {
 /// Adds the forces of a pair to those of its grains, D numbers each.
 template <int D>
 inline void add_pair(const PairTable& pairs, std::size_t p, double* on_i, double* on_j) {
-  const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
+  const double* row = pairs.force_row(D, p);
   for (std::size_t c = 0; c < D; ++c) {
     if (on_j != nullptr) on_j[c] += row[c];
     if (on_i != nullptr) on_i[c] -= row[c];

@@ -30,13 +30,13 @@ struct Symmetric<2, V> {
 
 /// along n n + across I.
 template <int D>
-inline __attribute__((always_inline)) Symmetric<D> stiffness_along(double along, double across, double nx, double ny,
-                                                                   double nz) {
-  Symmetric<D> m{along * (nx * nx) + across, along * (nx * ny), along * (ny * ny) + across};
+inline __attribute__((always_inline)) Symmetric<D> stiffness_along(double along, double across,
+                                                                   const Vec<double, D>& n) {
+  Symmetric<D> m{along * (n.x * n.x) + across, along * (n.x * n.y), along * (n.y * n.y) + across};
   if constexpr (D == 3) {
-    m.xz = along * (nx * nz);
-    m.yz = along * (ny * nz);
-    m.zz = along * (nz * nz) + across;
+    m.xz = along * (n.x * n.z);
+    m.yz = along * (n.y * n.z);
+    m.zz = along * (n.z * n.z) + across;
   }
   return m;
 }
@@ -116,7 +116,8 @@ struct PairTerms {
   double firm_translation = 0;
   bool touching = false;
   ContactStiffness now = {};
-  double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
+  double along = 0, across = 0;
+  Vec<double, D> n = {};
   Symmetric<D> stiffness = {};         ///< of round grains, the same for both
   double reach[2] = {}, turn[2] = {};  ///< not round: arms of the tangential and the normal force about i and j, m
 };
@@ -159,9 +160,9 @@ class TermsOfPairs {
     t.along = 2 * t.now.normal - 4 * kt;
     t.across = 4 * kt;
     const Branch& n = geometry.along();
-    t.nx = n.x / geometry.along_length();
-    t.ny = n.y / geometry.along_length();
-    if constexpr (D == 3) t.nz = n.z / geometry.along_length();
+    t.n.x = n.x / geometry.along_length();
+    t.n.y = n.y / geometry.along_length();
+    if constexpr (D == 3) t.n.z = n.z / geometry.along_length();
     if constexpr (moves_as_body(shape)) {
       // To the surfaces, half an overlap beyond the contact point: of spheres the radius, as where they move by
       // themselves.
@@ -178,7 +179,7 @@ class TermsOfPairs {
       t.turn[0] = std::abs(geometry.turn_i);
       t.turn[1] = std::abs(geometry.turn_j);
     } else {
-      t.stiffness = stiffness_along<D>(t.along, t.across, t.nx, t.ny, t.nz);
+      t.stiffness = stiffness_along<D>(t.along, t.across, t.n);
     }
     return t;
   }
@@ -196,42 +197,58 @@ class TermsOfPairs {
 double normal_to_translation(double kn, double turn, double r) { return 2 * kn * (turn / r); }
 double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
 
+/// Where the forces of a contact act on what moves, m: about a grain, or about the body that it is a member of.
+struct Levers {
+  double radius;         ///< what its spin is compared by
+  double squared, once;  ///< of the tangential force, as the product that it is
+  double turn;           ///< of the normal force
+  double outer, far;     ///< the largest that both may have
+};
+
+/// What a contact gives to a grain or body. `turned`: its normal force turns it too; of round grains that move by
+/// themselves that part falls out.
+template <bool turned, int D>
+inline __attribute__((always_inline)) void add(const Damping& damping, const PairTerms<D>& t, const Levers& at,
+                                               GrainSums<D>& sums) {
+  double stiffest = t.firm_translation,
+         stiffest_turn = 4 * t.firm.tangential * at.outer * at.outer + 2 * t.firm.rolling;
+  if constexpr (turned) {
+    stiffest += normal_to_translation(t.firm.normal, at.far, at.radius);
+    stiffest_turn += normal_to_rotation(t.firm.normal, at.far, at.radius);
+  }
+  sums.stiffest = std::max(sums.stiffest, stiffest);
+  sums.stiffest_turn = std::max(sums.stiffest_turn, stiffest_turn);
+  if (!t.touching) return;
+  double rotation = 4 * t.now.tangential * at.squared * at.once + 2 * t.now.rolling;
+  if constexpr (turned) {
+    add_to<D>(sums.stiffness,
+              stiffness_along<D>(t.along + normal_to_translation(t.now.normal, at.turn, at.radius), t.across, t.n));
+    rotation += normal_to_rotation(t.now.normal, at.turn, at.radius);
+  } else {
+    add_to<D>(sums.stiffness, t.stiffness);
+  }
+  sums.rotation += rotation;
+  if (damping.dashpot != Dashpot::none) sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * damping.tangential_ratio);
+}
+
+/// To grain g.
 template <Shape shape>
 inline __attribute__((always_inline)) void add(const Model& model, const PairTerms<dimension_of(shape)>& t,
                                                std::size_t g, bool as_j, GrainSums<dimension_of(shape)>& sums) {
-  constexpr int D = dimension_of(shape);
   const double r = model.radius.data()[g];
-  if constexpr (moves_as_body(shape)) {
-    const double outer = model.outer_radius[g], farthest = model.form[9 * g + 8], turn = t.turn[as_j];
-    sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
-    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * outer * outer + 2 * t.firm.rolling +
-                                                          normal_to_rotation(t.firm.normal, farthest, r));
-    if (!t.touching) return;
-    add_to<D>(sums.stiffness,
-              stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx, t.ny, t.nz));
-    sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
-                     normal_to_rotation(t.now.normal, turn, r);
-  } else if constexpr (!is_round(shape)) {
-    // What may come to touch may do so anywhere.
-    const Extent extent = Description<shape>::extent(own_of<Description<shape>>(model.own, g));
-    const double a = extent.outer, farthest = extent.turning, turn = t.turn[as_j];
-    sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
-    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * a * a + 2 * t.firm.rolling +
-                                                          normal_to_rotation(t.firm.normal, farthest, r));
-    if (!t.touching) return;
-    const double along = t.along + normal_to_translation(t.now.normal, turn, r);
-    add_to<D>(sums.stiffness, stiffness_along<D>(along, t.across, t.nx, t.ny, t.nz));
-    sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
-                     normal_to_rotation(t.now.normal, turn, r);
+  if constexpr (is_round(shape)) {
+    add<false>(model.damping, t, {r, r, r, 0, r, 0}, sums);
   } else {
-    sums.stiffest = std::max(sums.stiffest, t.firm_translation);
-    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
-    if (!t.touching) return;
-    add_to<D>(sums.stiffness, t.stiffness);
-    sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
+    // What may come to touch may do so anywhere.
+    double outer, far;
+    if constexpr (moves_as_body(shape)) {
+      outer = model.outer_radius[g], far = model.form[9 * g + 8];
+    } else {
+      const Extent extent = Description<shape>::extent(own_of<Description<shape>>(model.own, g));
+      outer = extent.outer, far = extent.turning;
+    }
+    add<true>(model.damping, t, {r, t.reach[as_j], t.reach[as_j], t.turn[as_j], outer, far}, sums);
   }
-  if (model.damping.dashpot != Dashpot::none)
-    sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * model.damping.tangential_ratio);
 }
 
 /// Adds the interactions other than contacts: as contacts, with arms as they are and with both moments.
@@ -241,9 +258,9 @@ void add_interactions(const Model& model, const Assembly& assembly, std::vector<
   for (const ActingInteraction& a : acting_interactions(model, assembly)) {
     const double kt = a.stiffness.tangential + 0.5 * std::abs(a.normal_force) / a.length;
     const double turning = 2 * std::max(a.stiffness.bending, a.stiffness.twisting);
-    // A branch that a force pulls apart softens: no more than nothing.
-    const Symmetric<D> stiffness = stiffness_along<D>(2 * std::max(0.0, a.stiffness.normal) - 4 * kt, 4 * kt,
-                                                      a.normal[0], a.normal[1], a.normal[2]);
+    // A branch that a force pulls apart softens: its stiffness is clamped at zero.
+    const Symmetric<D> stiffness =
+        stiffness_along<D>(2 * std::max(0.0, a.stiffness.normal) - 4 * kt, 4 * kt, first_of<D>(a.normal.data()));
     for (const bool as_j : {false, true}) {
       GrainSums<D>& of = sums[as_j ? a.j : a.i];
       const double arm = as_j ? a.arm_j : a.arm_i;
@@ -268,22 +285,17 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_bodies(const Model& model, c
       for (const bool as_j : {false, true}) {
         const auto g = std::size_t(as_j ? assembly.pairs.j[p] : assembly.pairs.i[p]);
         const auto b = std::size_t(bodies.owner[g]);
-        GrainSums<D>& of = sums[b];
         const Vector3 arm = assembly.bodies.arm(g);
-        const double r = bodies.radius[b], far = arm.norm(), farthest = far + model.radius[g];
-        of.stiffest = std::max(of.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, far, r));
-        of.stiffest_turn = std::max(of.stiffest_turn, 4 * t.firm.tangential * farthest * farthest + 2 * t.firm.rolling +
-                                                          normal_to_rotation(t.firm.normal, far, r));
-        if (!t.touching) continue;
-        const Vector3 n(t.nx, t.ny, t.nz);
-        const double reach = (as_j ? -1 : 1) * model.radius[g];  // as of grains that move by themselves
-        const double squared = arm.squaredNorm() + 2 * reach * arm.dot(n) + reach * reach;
-        const double along_n = arm.dot(n), turn = std::sqrt(std::max(0.0, arm.squaredNorm() - along_n * along_n));
-        add_to<D>(of.stiffness, stiffness_along<D>(t.along + normal_to_translation(t.now.normal, turn, r), t.across,
-                                                   t.nx, t.ny, t.nz));
-        of.rotation += 4 * t.now.tangential * squared + 2 * t.now.rolling + normal_to_rotation(t.now.normal, turn, r);
-        if (model.damping.dashpot != Dashpot::none)
-          of.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * model.damping.tangential_ratio);
+        const double r = model.radius[g], far = arm.norm();
+        Levers at{bodies.radius[b], 0, 1, 0, far + r, far};
+        if (t.touching) {
+          Vector3 n(t.n.x, t.n.y, 0);
+          if constexpr (D == 3) n[2] = t.n.z;
+          const double along = arm.dot(n), reach = as_j ? -r : r;  // as of grains that move by themselves
+          at.squared = arm.squaredNorm() + 2 * reach * along + reach * reach;
+          at.turn = std::sqrt(std::max(0.0, arm.squaredNorm() - along * along));
+        }
+        add<true>(model.damping, t, at, sums[b]);
       }
     }
   }

@@ -86,7 +86,7 @@ struct SoftCoat {
       const V so_far = load_as<V>(p.column[path] + at) + square_root(dot(m.slip, m.slip));
       shear = plus(shear, -0.5 * load_as<V>(p.column[stiffness_of_coats] + at), m.slip);
       shear = chosen(normal > zero, shear, none);
-      store_triple(p.column + shear_force, at, shear);
+      store_vec(p.column + shear_force, at, shear);
       store_as(p.column[path] + at, (normal > zero) ? so_far : zero);
     }
     return {normal, shear, none};
