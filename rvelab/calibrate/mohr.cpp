@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "rvelab/error.hpp"
 
@@ -11,7 +12,7 @@ namespace rvelab::calibrate {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double degree = pi / 180;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double strain_slack = 1e-9;  // recorded strains are round numbers up to round-off

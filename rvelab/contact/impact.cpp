@@ -1,11 +1,12 @@
 #include "rvelab/contact/impact.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace rvelab {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// ln(x) for x > 0: x = m 2^k with m near 1, ln m = 2 artanh((m - 1)/(m + 1)).
 double natural_logarithm(double x) {

@@ -18,7 +18,7 @@ namespace rvelab::report {
 namespace {
 
 using ensemble::nan;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A field that colours the grains, one value per grain.
 struct Field {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "rvelab/error.hpp"
 
@@ -9,7 +10,7 @@ namespace rvelab {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Sums over all ordered pairs, a grain with itself too, of powers of the reach R = a_i + a_j.
 struct ReachPowers {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
@@ -51,7 +52,7 @@ constexpr double increment_steps = 32;
 /// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are sought anew.
 constexpr double flight_per_step = 0.05, flight_per_look = 0.5;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 double square(double x) { return x * x; }
 
