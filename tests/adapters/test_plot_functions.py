@@ -16,7 +16,7 @@ import numpy as np
 
 class Indices(unittest.TestCase):
     def test_are_found_of_a_path_of_straight_parts_and_where_first_loading_bends(self) -> None:
-        # First loading 10 to 100 kPa by 0.05 and on to 1600 by 0.30, swelling to 100 by 0.04, reloading to 1600 by 0.06.
+        # First loading 10 to 100 kPa by 0.05 and on to 1600 by 0.30, swelling to 100 by 0.04, reloading by 0.06.
         x = np.concatenate([np.linspace(1, 3.2, 23), np.linspace(3.2, 2, 13), np.linspace(2, 3.2, 13)[1:]])
         e = np.concatenate([1 - 0.05 * (x[:23] - 1) - 0.25 * np.maximum(x[:23] - 2, 0), np.zeros(25)])
         e[23:36] = e[22] + 0.04 * (3.2 - x[23:36])
