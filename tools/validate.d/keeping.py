@@ -56,7 +56,9 @@ def text(table):
 def keep(name, table, folder=None):
     """Both files, each whole or as it was."""
     path_of(name, folder).parent.mkdir(parents=True, exist_ok=True)
-    write(path_of(name, folder), json.dumps(table, indent=1, ensure_ascii=False) + "\n")
+    head = json.dumps({key: value for key, value in table.items() if key != "entries"}, indent=1, ensure_ascii=False)
+    lines = ",\n  ".join(json.dumps(each, ensure_ascii=False) for each in table["entries"])
+    write(path_of(name, folder), f'{head[:-2]},\n "entries": [\n  {lines}\n ]\n}}\n')
     write((folder or RESULTS) / f"{name}.txt", text(table))
 
 
