@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -165,16 +166,25 @@ class Kept(Bench):
         self.assertIsNone(self.make("echo whole"))
         before = self.text()
 
-        def soon(*_: object) -> None:
+        def stop(*_: object) -> None:
             raise KeyboardInterrupt
 
-        signal.signal(signal.SIGALRM, soon)
-        signal.setitimer(signal.ITIMER_REAL, 1)
+        def once_begun() -> None:
+            while not (work / "pid").exists() or not (work / "pid").read_text():
+                time.sleep(0.05)
+            os.kill(os.getpid(), signal.SIGALRM)
+
+        signal.signal(signal.SIGALRM, stop)
+        threading.Thread(target=once_begun, daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
-            self.make(f"echo half; echo $$ >{work}/pid; sleep 60; echo late")
+            self.make(f"echo half; echo $$ >{work}/pid; sleep 600; echo late")
         self.assertEqual(self.text(), before)
-        time.sleep(0.1)
-        self.assertFalse(Path(f"/proc/{(work / 'pid').read_text().strip()}").exists())
+        process = Path(f"/proc/{(work / 'pid').read_text().strip()}")
+        for _ in range(100):
+            if not process.exists():
+                break
+            time.sleep(0.1)
+        self.assertFalse(process.exists())
 
 
 class Stale(unittest.TestCase):
