@@ -32,6 +32,8 @@ using rvelab::test::asked_for, rvelab::test::found;
 void* operator new(std::size_t size) { return found(asked_for(size)); }
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return asked_for(size); }
 void* operator new(std::size_t size, std::align_val_t edge) { return found(asked_for(size, std::size_t(edge))); }
+// Where new is not inlined but delete is, gcc sees free() of what operator new returned: here both are malloc's.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void operator delete(void* at) noexcept { std::free(at); }
 void operator delete(void* at, std::size_t) noexcept { std::free(at); }
 void operator delete(void* at, std::align_val_t) noexcept { std::free(at); }
