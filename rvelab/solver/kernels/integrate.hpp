@@ -28,7 +28,7 @@ struct PartialSums {
   using V = typename Lanes<W>::V;
   V part[8 / W] = {};
   inline __attribute__((always_inline)) void add(int which, V value) { part[which] = part[which] + value; }
-  double total() const {
+  inline __attribute__((always_inline)) double total() const {
     double values[8];
     std::memcpy(values, part, sizeof(values));
     return ((values[0] + values[4]) + (values[2] + values[6])) + ((values[1] + values[5]) + (values[3] + values[7]));
@@ -61,7 +61,8 @@ struct LaneSums {
   inline __attribute__((always_inline)) void see_speed(typename Lanes<W>::V speed) {
     fastest = (speed > fastest) ? speed : fastest;
   }
-  void put(StepSums* sums) const {
+  /// Inlined, as all that sees the sums: they stay in registers, since no store can reach them.
+  inline __attribute__((always_inline)) void put(StepSums* sums) const {
     for (int k = 0; k < 3; ++k) sums->momentum[k] = momentum[k].total();
     sums->largest_speed_squared = largest_of(fastest);
     sums->local_damping = lost_locally.total();
@@ -85,9 +86,9 @@ struct ChunkSums {
 };
 
 /// The force rows of a chunk of grains, by tasks, over the pairs in which they are j and over those in which they are
-/// i. `Sum`: what one task adds up, begin(), add() and put(). Not inlined: the same for every damping and loading.
+/// i. `Sum`: what one task adds up, begin(), add() and put().
 template <class Sum>
-__attribute__((noinline)) void gather_forces(const GrainArrays& grains, const PairArrays& pairs, long first, long count,
+inline __attribute__((always_inline)) void gather_forces(const GrainArrays& grains, const PairArrays& pairs, long first, long count,
                                              ChunkSums& sums) {
   // Copies that no store can change (kernels/pairs.hpp).
   const GrainArrays g = grains;
