@@ -88,8 +88,8 @@ struct ChunkSums {
 /// The force rows of a chunk of grains, by tasks, over the pairs in which they are j and over those in which they are
 /// i. `Sum`: what one task adds up, begin(), add() and put().
 template <class Sum>
-inline __attribute__((always_inline)) void gather_forces(const GrainArrays& grains, const PairArrays& pairs, long first, long count,
-                                             ChunkSums& sums) {
+inline __attribute__((always_inline)) void gather_forces(const GrainArrays& grains, const PairArrays& pairs, long first,
+                                                         long count, ChunkSums& sums) {
   // Copies that no store can change (kernels/pairs.hpp).
   const GrainArrays g = grains;
   const PairArrays p = pairs;
