@@ -30,40 +30,42 @@ struct PartialSums {
   inline __attribute__((always_inline)) void add(int which, V value) { part[which] = part[which] + value; }
   inline __attribute__((always_inline)) double total() const {
     double values[8];
-    std::memcpy(values, part, sizeof(values));
+    for (int k = 0; k < 8 / W; ++k) store_as(values + k * W, part[k]);
     return ((values[0] + values[4]) + (values[2] + values[6])) + ((values[1] + values[5]) + (values[3] + values[7]));
   }
 };
 
 /// Largest of the lanes; the order cannot matter.
 template <class V>
-inline double largest_of(V v) {
+inline __attribute__((always_inline)) double largest_of(V v) {
   double values[sizeof(V) / sizeof(double)];
-  std::memcpy(values, &v, sizeof(V));
+  store_as(values, v);
   double largest = values[0];
   for (double value : values) largest = value > largest ? value : largest;
   return largest;
 }
 
-/// Sums of a call (StepSums).
+/// Sums of a call (StepSums). Momentum by components, not as an array: the sums stay in registers so (grain loop of
+/// discs, AVX2: 705 instructions of code instead of 767).
 template <int W>
 struct LaneSums {
-  PartialSums<W> momentum[3], lost_locally, lost_globally;
+  PartialSums<W> momentum_x, momentum_y, momentum_z, lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
 
   template <int D>
   inline __attribute__((always_inline)) void add_momentum(int part, typename Lanes<W>::V mass,
                                                           const Vec<typename Lanes<W>::V, D>& v) {
-    momentum[0].add(part, mass * v.x);
-    momentum[1].add(part, mass * v.y);
-    if constexpr (D == 3) momentum[2].add(part, mass * v.z);
+    momentum_x.add(part, mass * v.x);
+    momentum_y.add(part, mass * v.y);
+    if constexpr (D == 3) momentum_z.add(part, mass * v.z);
   }
   inline __attribute__((always_inline)) void see_speed(typename Lanes<W>::V speed) {
     fastest = (speed > fastest) ? speed : fastest;
   }
-  /// Inlined, as all that sees the sums: they stay in registers, since no store can reach them.
   inline __attribute__((always_inline)) void put(StepSums* sums) const {
-    for (int k = 0; k < 3; ++k) sums->momentum[k] = momentum[k].total();
+    sums->momentum[0] = momentum_x.total();
+    sums->momentum[1] = momentum_y.total();
+    sums->momentum[2] = momentum_z.total();
     sums->largest_speed_squared = largest_of(fastest);
     sums->local_damping = lost_locally.total();
     sums->global_damping = lost_globally.total();
