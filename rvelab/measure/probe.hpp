@@ -41,8 +41,8 @@ inline constexpr double usual_loading_probe = 1e-3, smallest_loading_probe = 1e-
 ///   D d0 = s(d0),   D t = (s(d0 + a t) - s(d0 - a t))/2a
 /// s(d): change of stress over strain in the second half of the straight path size d from a copy of the RVE. In the
 /// first half contacts begin to slide and the lag of the state decays: relaxed and unrelaxed copies then give the same.
-/// At the peak of biaxial tests det of the acoustic tensor is -0.02 +- 0.02 of the elastic one; by probe_stiffness,
-/// which averages loading and unloading, 0.39 (tools/validate bands).
+/// At the peak of biaxial tests det of the acoustic tensor is -0.02 +- 0.01 of the elastic one; by probe_stiffness,
+/// which averages loading and unloading, 0.44 (tools/validate bands).
 /// InputError without a direction, or unless smallest_loading_probe <= size <= largest_loading_probe. IncrementFailed
 /// as apply.
 Eigen::MatrixXd loading_stiffness(const Rve& rve, const Matrix3& direction, double size = usual_loading_probe);
