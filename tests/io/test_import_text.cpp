@@ -144,6 +144,12 @@ TEST_CASE("The dimension asked for must be that of META.json, and contacts want 
   auto json = meta("dense");
   json.erase("n_particles");
   write_bytes(folder / "m.json", json.dump());
-  CHECK_THAT(input_error([&] { io::import_csv(folder / "p.csv", packings + "dense.contacts.csv", folder / "m.json"); }),
+  std::string notes;
+  options.dimension.reset();
+  options.tell = [&](const std::string& note) { notes += note; };
+  CHECK_THAT(input_error([&] {
+               io::import_csv(folder / "p.csv", packings + "dense.contacts.csv", folder / "m.json", options);
+             }),
              Contains("has no column id"));
+  CHECK(notes.empty());  // what is refused is not described before
 }

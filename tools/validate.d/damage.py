@@ -57,7 +57,7 @@ def flip(command, original, number, sealed, damaged):
             counts["refused"] += 1
         else:
             counts["bad"] += 1
-            print(f"  byte {at} bit {bit}: exit code {code}, {errors!r}")
+            print(f"  byte {at} bit {bit}: exit code {code}, {errors.replace(str(work), work.name)!r}")
     print(f"{original.name}: {len(whole)} bytes, {number} flips: " + ", ".join(f"{n} {k}" for k, n in counts.items()))
     return counts["bad"] == 0 and not (sealed and counts["opened and differed"])
 

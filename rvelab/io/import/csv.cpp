@@ -305,12 +305,13 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
 
   specimen.shape = shape_of(table, particles.dimension);
   const auto wraps = read_grains(table, specimen);
-  if (!table.has("id")) options.tell(particles_path + " has no column id: grains are numbered from 1 in its order");
-  if (contacts_path) {
-    if (!table.has("id")) {
+  if (!table.has("id")) {
+    if (contacts_path)
       throw InputError(particles_path + ": has no column id, and " + *contacts_path +
                        " names grains by it; allowed: contacts of particles with ids; add the column");
-    }
+    options.tell(particles_path + " has no column id: grains are numbered from 1 in its order");
+  }
+  if (contacts_path) {
     const CsvTable contacts(*contacts_path);
     expect_rows(contacts, meta ? meta->contacts : std::nullopt, "n_contacts", meta_json_path);
     read_contacts(contacts, wraps, specimen);
