@@ -33,8 +33,8 @@ inline __attribute__((always_inline)) Vec<V, D> branch_with_image(const UpperTri
                                                                   const Vec<V, D>& image) {
   return d + mapped(lattice, image);
 }
-/// The same of contacts, of which most blocks of eight have no image. By components: whole vectors that two branches give
-/// would go through memory (discs, four lanes: 21 instructions more in 410).
+/// The same of contacts, of which most blocks of eight have no image. By components: whole vectors that two branches
+/// give would go through memory (discs, four lanes: 21 instructions more in 410).
 template <class V, int D>
 inline __attribute__((always_inline)) Vec<V, D> branch_of(const StepConstants& c, const PairArrays& p, long at,
                                                           const Vec<V, D>& d) {
