@@ -58,7 +58,7 @@ Report defer(State& state, const FrameSplit& increment, const Deferral& deferral
 bool is_along_deferred(const State& state, const FrameSplit& increment) {
   const Matrix3 change = increment.stretch - Matrix3::Identity(),
                 deferred = state.control().deferred.stretch - Matrix3::Identity();
-  return change.cwiseProduct(deferred).sum() > same_direction * change.norm() * deferred.norm();
+  return change.cwiseProduct(deferred).sum() > 0;
 }
 
 void note_slope(State& state, const Matrix3& stretch, const Matrix3& stress_before, bool same_frame) {

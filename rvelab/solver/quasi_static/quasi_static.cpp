@@ -141,13 +141,12 @@ void take_in_deferred(State& state, FrameSplit& increment) {
 
 /// Of an increment against the rate of strain of the last sub-step.
 struct TurnOfPath {
-  bool turns;         ///< outside of the cone of same_direction
   bool starts_again;  ///< no component along it, as after a stop
   bool reverses;      ///< a component against it
 };
-TurnOfPath turn_of(double strain, const Matrix3& change, const Matrix3& rate) {
+TurnOfPath turn_of(const Matrix3& change, const Matrix3& rate) {
   const double along = rate.cwiseProduct(change).sum();
-  return {along < same_direction * strain * rate.norm(), along <= 0, along < 0};
+  return {along <= 0, along < 0};
 }
 
 /// What an increment finds done before its first sub-step.
@@ -160,8 +159,8 @@ Prepared prepare_increment(State& state, const Matrix3& change, double strain, T
   const bool cached = caching == TrialCaching::on && by_tolerance(state);
   if (cached && state.has_trial_cache()) {
     CachedRelaxation& made = state.cached_relaxation();
-    const TurnOfPath turn = turn_of(strain, change, made.rate);
-    if (relaxes_alike(state.model().options, made, strain, turn.turns)) {
+    const TurnOfPath turn = turn_of(change, made.rate);
+    if (relaxes_alike(state.model().options, made, strain, turn.reverses)) {
       state.take_trial_cache();
       state.count_shared(substeps_of(made));
       return {EquilibriumCheck(state, made.not_yet_checked), turn, relaxed_by(state, made)};
@@ -169,7 +168,7 @@ Prepared prepare_increment(State& state, const Matrix3& change, double strain, T
   }
   Prepared prepared{EquilibriumCheck(state), {}, {}};
   prepared.check.prepare();
-  prepared.turn = turn_of(strain, change, state.last_step().rate);
+  prepared.turn = turn_of(change, state.last_step().rate);
   if (!by_tolerance(state)) return prepared;
   // Masses that were scaled again want a check. Where grains are held firmly and forces are what they will be, it is
   // one of the state that trials share: at the end of each it was two fifths of a trial of 1e-6 from rest (114,000 of
@@ -179,7 +178,7 @@ Prepared prepare_increment(State& state, const Matrix3& change, double strain, T
       !holds_more_than_friction(state.model(), state.assembly()))
     prepared.check.check();
   CachedRelaxation relaxation = inputs_of_relaxation(state);
-  prepared.relaxed = relax_before(state, prepared.check, strain, prepared.turn.turns, relaxation);
+  prepared.relaxed = relax_before(state, prepared.check, strain, prepared.turn.reverses, relaxation);
   relaxation.not_yet_checked = prepared.check.not_yet_checked();
   // The longest that was made stays: it is worth most.
   const bool worth = relaxation.parts() > 0 || masses_scaled;

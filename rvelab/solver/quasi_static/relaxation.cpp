@@ -60,14 +60,14 @@ Report relax(State& state, double unbalanced, long max_steps) {
 namespace {
 
 /// Error that an increment allows the state before it, Pa; none: it goes on from the state as it is.
-std::optional<double> allowed_before(const SolverOptions& o, const CachedRelaxation& s, double strain, bool turns) {
+std::optional<double> allowed_before(const SolverOptions& o, const CachedRelaxation& s, double strain, bool reverses) {
   const double so_far = s.strain_since_reversal;
-  const double path = turns ? so_far : std::max(strain, std::min(so_far + strain, judged_together));
+  const double path = reverses ? so_far : std::max(strain, std::min(so_far + strain, judged_together));
   const double elastic_change = s.network_stiffness * path;
   const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, s.stiffness_ratio * elastic_change,
                                        elastic_change, s.pressure_scale);
   const double target = s.pressure > 0 ? ratio_for(allowed, s.error_per_ratio) : largest_target;
-  if (!turns && !(s.target_unbalanced_ratio > step_margin * target)) return std::nullopt;
+  if (!reverses && !(s.target_unbalanced_ratio > step_margin * target)) return std::nullopt;
   return allowed;
 }
 
@@ -92,8 +92,9 @@ CachedRelaxation inputs_of_relaxation(State& state) {
   return s;
 }
 
-Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool turns, CachedRelaxation& relaxation) {
-  const std::optional<double> allowed = allowed_before(state.model().options, relaxation, strain, turns);
+Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool reverses,
+                     CachedRelaxation& relaxation) {
+  const std::optional<double> allowed = allowed_before(state.model().options, relaxation, strain, reverses);
   if (!allowed) return {};
   relaxation.error.push_back(expected_error(state, state.control().unbalanced_ratio));
   while (goes_on(relaxation, relaxation.parts(), *allowed)) {
@@ -105,8 +106,8 @@ Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool 
   return relaxed_by(state, relaxation);
 }
 
-bool relaxes_alike(const SolverOptions& options, const CachedRelaxation& made, double strain, bool turns) {
-  const std::optional<double> allowed = allowed_before(options, made, strain, turns);
+bool relaxes_alike(const SolverOptions& options, const CachedRelaxation& made, double strain, bool reverses) {
+  const std::optional<double> allowed = allowed_before(options, made, strain, reverses);
   if (!allowed) return made.parts() == 0;
   std::size_t parts = 0;
   while (parts < made.parts() && goes_on(made, parts, *allowed)) ++parts;

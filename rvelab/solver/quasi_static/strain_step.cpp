@@ -27,7 +27,7 @@ double first_strain_step(State& state) {
 double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate, double strain_of_overlap,
                       double target, double steps, double most) {
   const double onward = change.cwiseProduct(rate).sum();
-  if (onward > same_direction * change.norm() * rate.norm()) target *= onward_allowance;
+  if (onward > 0) target *= onward_allowance;
   const double norm = change.norm();
   if (!(norm > 0)) return steps;
   while (steps < most) {
@@ -97,8 +97,7 @@ StartUp start_up_of(State& state, const Matrix3& change, double strain, double e
   if (strain > overlap && has_interactions(state.assembly()) && state.out_of_balance().touching == 0)
     overlap = strain / 3;
   // Stiff grains among soft ones answer as slowly as these: at 1 : 10,000 a start of five sub-steps left u = 0.5.
-  const bool elastic = state.model().alike_contacts && control.stiffness_ratio >= least_elastic_ratio &&
-                       strain <= longest_elastic_strain * overlap;
+  const bool elastic = state.model().alike_contacts && control.stiffness_ratio >= least_elastic_ratio;
   if (elastic && state.last_step().rate.isZero(0) && !turned_back) {
     const double factor = error_factor_of_start(state);
     const double target = target_ratio_of_start(state, elastic_change, factor);
