@@ -83,11 +83,16 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   if (network.has_bodies() && !network.has_solids()) made["members"] = network.members.size();
   made["contacts"] = network.contacts.size();
   made["coordination_number"] = coordination_number(network);
+  made["mechanical_coordination_number"] = mechanical_coordination_number(network);
   made["fabric_anisotropy"] = network.contacts.empty() ? Json() : Json(fabric_anisotropy(fabric(network), dimension));
   made["fabric"] = network.contacts.empty() ? Json() : row_major(fabric(network).topLeftCorner(dimension, dimension));
   made["unbalanced_force_ratio"] = rve.unbalanced_ratio();
   made["draw"] = packing.draw;
   made["preparation_friction"] = packing.preparation_friction;
+  if (packing.agitation) {
+    made["expansion"] = packing.agitation->expansion;
+    made["strain_difference"] = packing.agitation->strain_difference;
+  }
   made["wall_s"] = seconds;
   return made;
 }

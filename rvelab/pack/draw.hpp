@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rvelab/error.hpp"
+#include "rvelab/pack/contact_search.hpp"
 #include "rvelab/pack/draw_watch.hpp"
 #include "rvelab/pack/recipe.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -21,11 +22,13 @@ struct Draw {
   bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: given up, since the void ratio
                           ///< is too far from the target
   std::string why_not;    ///< how far the grains were from rest, where they were not at rest
-  Specimen specimen;      ///< of a draw at rest
+  std::vector<Compressed> compressed;  ///< of agitated grains: each trial, the last one is the specimen
+  Specimen specimen;                   ///< of a draw at rest
 };
 
-/// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same three.
-/// IncrementFailed if the grains do not come to the stress; NotAtRest; OverlapBeyondLimit; Interrupted.
-Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& watch);
+/// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same four.
+/// `agitation`: that which a search for the contacts begins with. IncrementFailed if the grains do not come to the
+/// stress; NotAtRest; OverlapBeyondLimit; Interrupted.
+Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& watch, const Agitation& agitation = {});
 
 }  // namespace rvelab::pack

@@ -299,6 +299,30 @@ void read_relative_density(TableReader& reader, Recipe& recipe) {
   recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
 }
 
+/// Number of contacts and fabric.
+void read_contact_target(TableReader& reader, ContactTarget& contacts) {
+  contacts.coordination_number = reader.optional_number(
+      "coordination_number", "1", {2, 20},
+      "contacts a grain of the finished specimen, 2 Nc/N without grains that bear nothing, for which rvelab finds "
+      "preparation.expansion",
+      "(what the preparation gives)");
+  reader.number("coordination_number_tolerance", contacts.coordination_tolerance, "1", below_one,
+                "allowed error of the coordination number");
+  contacts.fabric_anisotropy = reader.optional_number(
+      "fabric_anisotropy", "1", {-2, 2},
+      "anisotropy of the contacts along target.fabric_direction, negative where more lie across it, for which rvelab "
+      "finds preparation.strain_difference",
+      "(what the preparation gives)");
+  reader.number("fabric_anisotropy_tolerance", contacts.fabric_tolerance, "1", below_one,
+                "allowed error of the fabric anisotropy");
+  const Choices axes{"x", "y", "z"};
+  if (const std::string name =
+          reader.choice("fabric_direction", std::string(), axes,
+                        "axis of the fabric and of the compression of agitated grains", "(z, in 2D y)");
+      !name.empty())
+    contacts.axis = int(std::find(axes.begin(), axes.end(), name) - axes.begin());
+}
+
 void read_target(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   read_stress(reader, file);
@@ -317,6 +341,7 @@ void read_target(TableReader& reader, RecipeFile& file) {
     stress_named = stress_named || reader.has(name) || reader.has_in_another_unit(name);
   if (!stress_named && !recipe.void_ratio && !reader.has("void_ratio") && !reader.has("relative_density"))
     reader.mistake("pressure_Pa", "is missing, and so is target.void_ratio; allowed: one of them or both; add one");
+  read_contact_target(reader, recipe.contacts);
   reader.number("void_ratio_tolerance", recipe.void_ratio_tolerance, "1", below_one, "allowed error of the void ratio");
   reader.number("stress_tolerance", recipe.stress_tolerance, "1", below_one,
                 "allowed error of each stress component, over the mean pressure");
@@ -343,6 +368,16 @@ void read_preparation(TableReader& reader, RecipeFile& file) {
   p.growth_void_ratio = reader.optional_number("growth_void_ratio", "1", positive,
                                                "method = growth: void ratio of the cell once the grains have grown",
                                                "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)");
+  p.expansion = reader.optional_number(
+      "expansion", "1", {0, largest_expansion, true},
+      "strain of the cell along each axis, after which the grains collide without friction and are compressed with "
+      "their own, as in a shaken sand; the larger, the fewer contacts",
+      "(searched for target.coordination_number; else the grains are not agitated)");
+  p.strain_difference = reader.optional_number(
+      "strain_difference", "1", {-largest_strain_difference, largest_strain_difference},
+      "of that compression: strain along target.fabric_direction less that across it, over the larger; positive makes "
+      "more contacts along it",
+      "(searched for target.fabric_anisotropy; else 0)");
   if (p.method != Preparation::Method::growth && recipe.stress)
     for (const char* name : {"first_size", "growth_void_ratio"})
       reader.refuse(name, "contradicts method = " + as_toml(methods[std::size_t(p.method)]) +

@@ -31,6 +31,39 @@ double growth_void_ratio(const Recipe& recipe) {
   return dimension_of(recipe.shape) == 2 ? 0.3 : 0.9;
 }
 
+bool is_agitated(const Recipe& recipe) { return recipe.contacts.coordination_number || recipe.preparation.expansion; }
+
+int fabric_axis(const Recipe& recipe) { return recipe.contacts.axis.value_or(dimension_of(recipe.shape) - 1); }
+
+double anisotropy_along(const Matrix3& fabric, int dimension, int axis) {
+  const double part = fabric(axis, axis);
+  return dimension == 2 ? 4 * (part - 0.5) : 45.0 / 4 * (part - 1.0 / 3);
+}
+
+/// What agitates without need or means.
+void check_agitation(const Recipe& recipe) {
+  const Preparation& p = recipe.preparation;
+  const ContactTarget& contacts = recipe.contacts;
+  if (contacts.coordination_number && p.expansion)
+    throw InputError(
+        "preparation.expansion contradicts target.coordination_number, for which it is searched; allowed: one of the "
+        "two; remove one");
+  if (contacts.fabric_anisotropy && p.strain_difference)
+    throw InputError(
+        "preparation.strain_difference contradicts target.fabric_anisotropy, for which it is searched; allowed: one of "
+        "the two; remove one");
+  if ((contacts.fabric_anisotropy || p.strain_difference) && !is_agitated(recipe))
+    throw InputError(
+        std::string(contacts.fabric_anisotropy ? "target.fabric_anisotropy" : "preparation.strain_difference") +
+        " needs agitated grains; allowed: with target.coordination_number or preparation.expansion; add one");
+  if (is_agitated(recipe) && !recipe.stress)
+    throw InputError(
+        std::string(contacts.coordination_number ? "target.coordination_number" : "preparation.expansion") +
+        " needs a stress, which the contacts carry; allowed: with target.pressure_Pa or target.stress_Pa; add one");
+  if (contacts.axis && *contacts.axis >= dimension_of(recipe.shape))
+    throw InputError("target.fabric_direction = \"z\" is across the plane; allowed: \"x\" or \"y\" in 2D; give one");
+}
+
 void check_recipe(const Recipe& recipe) {
   if (recipe.number == 0 || recipe.fractions.empty() || recipe.materials.empty())
     throw InputError("a recipe needs at least one grain, one fraction and one material; add what is missing");
@@ -40,6 +73,7 @@ void check_recipe(const Recipe& recipe) {
     throw InputError(
         "preparation.friction contradicts target.void_ratio, for which the friction is searched; allowed: "
         "one of the two; remove one");
+  check_agitation(recipe);
   check_parameters(recipe.contact, recipe.damping, recipe.materials);
   if (recipe.preparation.method == Preparation::Method::regular) check_regular(recipe);
   if (moves_as_body(recipe.shape) && (recipe.preparation.method != Preparation::Method::compression || !recipe.stress))

@@ -51,6 +51,30 @@ struct Preparation {
   long max_draws = 100;                                ///< of that search
   double first_size = 0.2;                             ///< growth: radii at the start over those at the end
   std::optional<double> growth_void_ratio;             ///< growth: of the cell when the grains have grown; none: below
+  // Agitation (agitation.hpp) between the preparation friction and that of the materials:
+  std::optional<double> expansion;          ///< strain along each axis; none: searched for a coordination number, or no
+                                            ///< agitation
+  std::optional<double> strain_difference;  ///< of the compression after it; none: searched for a fabric, or 0
+};
+
+/// How agitated grains are compressed.
+struct Agitation {
+  double expansion = 8e-3;  ///< strain of the cell along each axis, by which the grains come apart
+  /// Of the compressive strains along ContactTarget::axis and across it, over the larger of them. 0: isotropic, 1:
+  /// along alone, -1: across alone, up to 1.5: the cell widens across while it shortens.
+  double strain_difference = 0;
+};
+inline constexpr double largest_expansion = 0.1, largest_strain_difference = 1.5;
+
+/// Number and directions of the contacts of the finished specimen; none: what the preparation gives.
+struct ContactTarget {
+  std::optional<double> coordination_number;  ///< Z_mech: of the grains that bear
+  double coordination_tolerance = 0.05;
+  /// Along the axis, positive where more contacts lie along it than across: 2D 4 (phi - 1/2), 3D 45/4 (phi - 1/3), phi
+  /// the mean square of the normals' component. Of a fabric with this axis fabric_anisotropy() and its sign.
+  std::optional<double> fabric_anisotropy;
+  double fabric_tolerance = 0.05;
+  std::optional<int> axis;  ///< 0, 1, 2; none: the last
 };
 
 /// A recipe. The same recipe gives the same bits on any number of threads.
@@ -71,6 +95,7 @@ struct Recipe {
   std::optional<Matrix3> stress;     ///< Pa, laboratory frame, tension positive, symmetric; none: void_ratio alone
   std::optional<double> void_ratio;  ///< none: what the preparation gives
   double void_ratio_tolerance = 1e-3;
+  ContactTarget contacts;
   double stress_tolerance = 5e-4;  ///< of the mean pressure, for each component
   double unbalanced = 1e-5;
   Preparation preparation;
@@ -86,6 +111,13 @@ std::vector<Material> preparing(const Recipe& recipe, double friction);
 /// and without that 0.3 in 2D, 0.9 in 3D.
 double growth_void_ratio(const Recipe& recipe);
 
+/// Whether the grains are agitated before they are compressed with their own friction.
+bool is_agitated(const Recipe& recipe);
+/// Number (0, 1, 2) of the axis of the fabric.
+int fabric_axis(const Recipe& recipe);
+/// The anisotropy along an axis (ContactTarget) of a fabric tensor in the laboratory frame.
+double anisotropy_along(const Matrix3& fabric, int dimension, int axis);
+
 /// Throws InputError for what no specimen can be made of.
 void check_recipe(const Recipe& recipe);
 
@@ -95,6 +127,7 @@ struct Packing {
   long draw = 1;  ///< the one that was accepted, from 1
   double preparation_friction = 0;
   double void_ratio = 0;
+  std::optional<Agitation> agitation = {};
 };
 
 }  // namespace rvelab::pack

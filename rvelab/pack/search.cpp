@@ -60,10 +60,45 @@ double crossing(const std::vector<Level>& levels, double target, double low, dou
 }
 
 /// Why a search ends without a specimen.
-enum class End { draws_spent, out_of_reach };
+enum class End { draws_spent, out_of_reach, contacts_out_of_reach };
+
+/// Void ratios this near to the target are about it.
+double near_density(const Recipe& recipe) { return std::max(5 * recipe.void_ratio_tolerance, 0.01); }
+
+/// The trials of agitated grains, those near the void ratio of the target if there are any.
+std::vector<Compressed> compressed_of(const Recipe& recipe, const std::vector<Draw>& draws) {
+  std::vector<Compressed> all, near;
+  for (const Draw& draw : draws)
+    for (const Compressed& each : draw.compressed) {
+      all.push_back(each);
+      if (recipe.void_ratio && std::abs(each.void_ratio - *recipe.void_ratio) <= near_density(recipe))
+        near.push_back(each);
+    }
+  return near.empty() ? all : near;
+}
+
+/// The numbers of contacts that agitated grains reached, and what to do about a target that is out of it.
+Error contacts_not_found(const Recipe& recipe, const std::vector<Draw>& draws) {
+  const ContactTarget& target = recipe.contacts;
+  const std::vector<Compressed> made = compressed_of(recipe, draws);
+  TextStream text;
+  if (target.coordination_number) {
+    text << "target.coordination_number = " << *target.coordination_number << " within "
+         << target.coordination_tolerance;
+    if (target.fabric_anisotropy) text << ", with ";
+  }
+  if (target.fabric_anisotropy)
+    text << "target.fabric_anisotropy = " << *target.fabric_anisotropy << " within " << target.fabric_tolerance;
+  text << " was not met in " << made.size() << " compressions; reached: " << reached_in_words(made);
+  if (target.fabric_anisotropy) text << " with " << fabric_in_words(made);
+  text << "; give a target between these, more contacts by a lower void ratio or a lower friction of the material, "
+          "fewer by a higher one, or raise the tolerance or pack.number";
+  return Error(text.str());
+}
 
 /// The range that the draws reached, and what to do about a target that is out of it.
 Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_t failed, End end) {
+  if (end == End::contacts_out_of_reach) return contacts_not_found(recipe, draws);
   const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
   TextStream text;
@@ -71,7 +106,9 @@ Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_
        << " in " << draws.size() + failed << " packings"
        << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "") << "; reached: " << lowest->void_ratio
        << " (preparation friction " << lowest->friction << ") to " << highest->void_ratio << " (" << highest->friction
-       << ")" << (end == End::out_of_reach ? ", too far from it for more packings to help; " : "; ");
+       << ")";
+  if (is_agitated(recipe)) text << ", with " << reached_in_words(compressed_of(recipe, draws));
+  text << (end == End::out_of_reach ? ", too far from it for more packings to help; " : "; ");
   if (*recipe.void_ratio > highest->void_ratio) {
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
@@ -107,6 +144,8 @@ class Search {
       if (made().empty() && overlap_) std::rethrow_exception(overlap_);
       if (made().empty() && unrest_ == draws_.size())
         throw IncrementFailed("packing: " + failures_.front() + remedy_of_unrest);
+      if (contacts_out_of_reach())
+        throw not_found(recipe_, made(), draws_.size() - made().size(), End::contacts_out_of_reach);
       if (out_of_reach()) throw not_found(recipe_, made(), draws_.size() - made().size(), End::out_of_reach);
     }
     if (made().empty()) throw IncrementFailed(failures_.front());
@@ -144,6 +183,34 @@ class Search {
     return std::abs(mean) > recipe_.void_ratio_tolerance + 5 * (1 + 4 / n) * std::max(deviation, least_deviation);
   }
 
+  /// Whether draws near the void ratio of the target all had other contacts than its.
+  bool contacts_out_of_reach() const {
+    std::size_t in_vain = 0;
+    for (const Draw& draw : made()) {
+      if (draw.compressed.empty()) continue;
+      const Compressed& last = draw.compressed.back();
+      if (std::abs(last.void_ratio - *recipe_.void_ratio) > near_density(recipe_)) continue;
+      if (last.meets(recipe_.contacts)) return false;
+      ++in_vain;
+    }
+    return in_vain >= 4;
+  }
+
+  /// The agitation by which the known draw of the nearest friction had its contacts.
+  Agitation first_agitation(double friction, std::size_t known) const {
+    Agitation best{recipe_.preparation.expansion.value_or(Agitation{}.expansion), 0};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < known; ++k) {
+      const Draw& draw = draws_[k];
+      if (!failures_[k].empty() || draw.compressed.empty() || !draw.compressed.back().meets(recipe_.contacts)) continue;
+      const double distance = std::abs(coordinate_of(draw.friction) - coordinate_of(friction));
+      if (distance > nearest) continue;
+      nearest = distance;
+      best = draw.compressed.back().by;
+    }
+    return best;
+  }
+
   double next_coordinate(std::size_t number, std::size_t known) {
     // The first ones over the range, at its middles rather than its ends.
     if (known == 0) return low_ + (high_ - low_) * ((double(number) + 0.5) / double(draws_at_a_time));
@@ -158,7 +225,8 @@ class Search {
   }
 
   bool accepted(const Draw& draw) const {
-    return draw.at_rest && std::abs(draw.void_ratio - *recipe_.void_ratio) <= recipe_.void_ratio_tolerance;
+    return draw.at_rest && std::abs(draw.void_ratio - *recipe_.void_ratio) <= recipe_.void_ratio_tolerance &&
+           (draw.compressed.empty() || draw.compressed.back().meets(recipe_.contacts));
   }
 
   /// Makes some draws; the first that is accepted by number, not by time.
@@ -170,7 +238,8 @@ class Search {
       if (number > found) return;  // an earlier one was accepted: nobody will look at this one
       Draw& made = draws_[number];
       try {
-        made = draw(recipe_, long(number) + 1, made.friction, watch_.of(long(number) + 1));
+        made = draw(recipe_, long(number) + 1, made.friction, watch_.of(long(number) + 1),
+                    first_agitation(made.friction, first));
       } catch (const OverlapBeyondLimit& failure) {
         failures_[number] = failure.what();
         if (number == 0) overlap_ = std::current_exception();
@@ -201,6 +270,7 @@ class Search {
     packing.draw = long(number) + 1;
     packing.preparation_friction = draws_[number].friction;
     packing.void_ratio = draws_[number].void_ratio;
+    if (!draws_[number].compressed.empty()) packing.agitation = draws_[number].compressed.back().by;
     packing.specimen = std::move(draws_[number].specimen);
     return packing;
   }
@@ -272,11 +342,15 @@ Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   } catch (const NotAtRest& failure) {
     throw IncrementFailed("packing: " + std::string(failure.what()) + remedy_of_unrest);
   }
+  if (!made.compressed.empty() && !made.compressed.back().meets(recipe.contacts))
+    throw contacts_not_found(recipe, {made});
   if (!made.at_rest)
     throw IncrementFailed("packing: the grains did not come to rest at the target stress" +
                           (made.why_not.empty() ? "" : ": " + made.why_not) + remedy_of_unrest);
   if (watch.on_draw) watch.on_draw(1, made.void_ratio);
-  return {std::move(made.specimen), 1, made.friction, made.void_ratio};
+  Packing packing{std::move(made.specimen), 1, made.friction, made.void_ratio};
+  if (!made.compressed.empty()) packing.agitation = made.compressed.back().by;
+  return packing;
 }
 
 }  // namespace rvelab::pack
