@@ -27,11 +27,27 @@ void read_sieves(TableReader& reader, const std::string& curve, Grading& grading
       reader.refuse(name, "contradicts grading = " + as_toml(curve) + "; allowed: one of the two; remove one");
   }
   if (!given || !d10 || !d50 || !d60) return;
-  const std::string wrong = wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
-  if (wrong.empty())
+  const std::string wrong =
+      wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60, 2 * grading.scalp_below, 2 * grading.scalp_above);
+  if (wrong.empty()) {
+    const Grading given = grading;
     grading = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
-  else
+    grading.scalp_below = given.scalp_below;
+    grading.scalp_above = given.scalp_above;
+  } else {
     reader.mistake("d50_mm", wrong);
+  }
+}
+
+/// Diameters at which the grading is cut.
+void read_scalping(TableReader& reader, Grading& grading) {
+  const auto below = reader.optional_number("scalp_below_mm", "mm", sieves_mm,
+                                            "scalping: grains of a smaller diameter are left out, and the rest of the "
+                                            "curve is the grading; rvelab pack reports what is cut off, by mass");
+  const auto above =
+      reader.optional_number("scalp_above_mm", "mm", sieves_mm, "scalping: grains of a larger diameter are left out");
+  if (below) grading.scalp_below = 5e-4 * *below;
+  if (above) grading.scalp_above = 5e-4 * *above;
 }
 
 /// The names of the gradings; the last is no curve of its own but a table that is made of three diameters.
@@ -63,6 +79,7 @@ void read_grading(TableReader& reader, Grading& grading) {
   const bool tabulated = curve == GradingName::tabulated;
   if (sieves && reader.has("passing_by") && !grading.by_mass)
     reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
+  read_scalping(reader, grading);
   read_sieves(reader, curves[std::size_t(curve)], grading);
   for (const char* name : {"smallest_radius_m", "largest_radius_m", "radii_m", "passing"}) {
     const bool of_table = name[0] == 'r' || name[0] == 'p';
