@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "rvelab/cli/command.hpp"
-#include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/warnings.hpp"
@@ -112,7 +111,6 @@ void run_import(const ImportArguments& arguments) {
   listing.print(arguments.json);
   warn_of_sizes(sizes);
   warn_of_units(first, pack::unusual_in(specimen));
-  warn_of_largest_grain(arguments.output, specimen);
 }
 
 }  // namespace

@@ -116,13 +116,14 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files, std
 
 /// One line per specimen; all results are in --json.
 std::string table_of(const std::vector<Job>& jobs) {
-  std::vector<std::vector<std::string>> rows{
-      {"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
+  std::vector<std::vector<std::string>> rows{{"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain",
+                                              "overlap, %", "friction while packed", "d10, d50, d90, m"}};
   for (const Job& job : jobs) {
     const auto shown = [&](const char* key) { return in_digits(job.made[key].get<double>(), 4); };
     rows.push_back({job.file, job.made["seed"].dump(), job.made["draw"].dump(), shown("void_ratio"),
                     in_digits(job.sizes.pressure, 4), shown("coordination_number"),
-                    two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction")});
+                    two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction"),
+                    shown("d10_m") + ", " + shown("d50_m") + ", " + shown("d90_m")});
   }
   return aligned(rows);
 }
