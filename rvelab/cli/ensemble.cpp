@@ -60,8 +60,8 @@ std::vector<RecordedTest> planned(const Ensemble& ensemble, const std::string& f
   return tests;
 }
 
-/// Reads every specimen once, so that mistakes are told before the first test runs. InputError if two files hold the
-/// same specimen, which would count twice, or if one does not go with the protocol.
+/// Reads every specimen once, so that mistakes are reported before the first test runs. InputError if two files hold
+/// the same specimen, which would count twice, or if one does not go with the protocol.
 int expect_specimens(const Ensemble& ensemble) {
   std::vector<std::uint32_t> digests;
   int dimension = 0;

@@ -43,7 +43,8 @@ LargestGrain largest_grain(const Specimen& specimen) {
 
 std::string unusual_in_words(const LargestGrain& largest, const std::string& grains) {
   const auto takes = [&](double number) {
-    return ", which takes " + std::to_string(long(std::ceil(number))) + " grains " + grains;
+    const std::string whole = number < 1e15 ? std::to_string(long(std::ceil(number))) : in_words(number);
+    return ", which takes " + whole + " grains " + grains;
   };
   std::string text;
   if (largest.mass_share > usual_mass_share)

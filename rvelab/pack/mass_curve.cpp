@@ -9,7 +9,10 @@ namespace rvelab::pack {
 
 double power_of(double radius, int dimension) { return dimension == 2 ? radius * radius : radius * radius * radius; }
 
-double root_of(double power, int dimension) { return dimension == 2 ? std::sqrt(power) : cube_root(power); }
+double root_of(double power, int dimension) {
+  if (!(power > 0 && std::isfinite(power))) return 0;
+  return dimension == 2 ? std::sqrt(power) : cube_root(power);
+}
 
 double in_three_digits_down(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);

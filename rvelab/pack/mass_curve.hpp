@@ -37,7 +37,7 @@ class MassCurve {
 
 /// r^2 or r^3.
 double power_of(double radius, int dimension);
-/// The radius of a power.
+/// The radius of a power; 0 of what is no positive number.
 double root_of(double power, int dimension);
 
 /// A positive number with three digits, rounded down.

@@ -30,10 +30,10 @@ void read_sieves(TableReader& reader, const std::string& curve, Grading& grading
   const std::string wrong =
       wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60, 2 * grading.scalp_below, 2 * grading.scalp_above);
   if (wrong.empty()) {
-    const Grading given = grading;
-    grading = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
-    grading.scalp_below = given.scalp_below;
-    grading.scalp_above = given.scalp_above;
+    Grading sieved = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+    sieved.scalp_below = grading.scalp_below;
+    sieved.scalp_above = grading.scalp_above;
+    grading = sieved;
   } else {
     reader.mistake("d50_mm", wrong);
   }

@@ -1,6 +1,6 @@
 // What a specimen is to be: grains, stress, void ratio, and how it is prepared.
 //
-// This room knows how to make specimens; it uses Rve as any client does and knows no file. Pressures and void ratios
+// This module knows how to make specimens; it uses Rve as any client does and knows no file. Pressures and void ratios
 // are those of the finished specimen, with the friction of its materials.
 #pragma once
 

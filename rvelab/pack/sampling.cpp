@@ -7,7 +7,8 @@
 namespace rvelab::pack {
 namespace {
 
-/// Part of a grain by which a part of the mass lies within it, at least: sums of masses are rounded.
+/// d10 is the grain that holds 10 % of the mass between its own ends, by at least this part of it from each: sums of
+/// masses are rounded.
 constexpr double margin = 0.05;
 
 /// A radius that the curve has: of one in a gap or beyond the ends, the next larger, or the end.
@@ -17,10 +18,11 @@ double of_curve(const NumberCurve& curve, double radius) {
 }
 
 /// Adds `count` strata of equal number between two parts of the mass, each a grain of its mean mass, times `scale` in
-/// mass.
+/// mass; none where the curve has no grain between the two.
 void add_strata(const MassCurve& curve, double from, double to, std::size_t count, double scale,
                 std::vector<double>& radii) {
-  const double first = curve.number_at(from), last = to < 1 ? curve.number_at(to) : 1, width = (last - first);
+  const double first = curve.number_at(from), last = to < 1 ? curve.number_at(to) : 1, width = last - first;
+  if (!(width > 0)) return;
   double below = from;
   for (std::size_t k = 1; k <= count; ++k) {
     const double up_to = k == count ? to : curve.mass_at(first + width * (double(k) / double(count)));
@@ -34,7 +36,7 @@ void add_strata(const MassCurve& curve, double from, double to, std::size_t coun
 struct Block {
   double from, to;
   std::size_t count;
-  double wanted;  ///< number of grains of the curve that have this mass
+  double wanted;  ///< number of grains of the curve that have this mass, not whole
 };
 
 /// Blocks between the grains at d90, d50 and d10, from the largest grains to the smallest.
@@ -116,7 +118,7 @@ double deviation_of(const std::vector<double>& radii, const MassCurve& curve) {
 }
 
 Sample stratified_sample(const MassCurve& curve, std::size_t count, double mean_power) {
-  constexpr double near_enough = 0.01;  // up to here the strata alone, which no curve of few grains is nearer to
+  constexpr double near_enough = 0.01;  // up to here the strata alone, whose ends have the mass of the curve
   Sample sample;
   add_strata(curve, 0, 1, count, 1, sample.radii);
   sample.deviation = deviation_of(sample.radii, curve);
@@ -124,7 +126,7 @@ Sample stratified_sample(const MassCurve& curve, std::size_t count, double mean_
     if (const auto design = design_for(curve, count)) {
       Sample other{grains_of(*design, curve), 0};
       other.deviation = deviation_of(other.radii, curve);
-      if (other.deviation < sample.deviation) sample = std::move(other);
+      if (other.radii.size() == count && other.deviation < sample.deviation) sample = std::move(other);
     }
   }
   const NumberCurve& by_number = curve.by_number();

@@ -5,9 +5,10 @@
 // quarter of the mass, is drawn at random from it, and d90 is up to a third off. Here
 //   1. each of N equal parts of the number (stratum) gets the grain of its mean mass, so that the mass up to the end of
 //      each is that of the curve, and the total that of N grains;
-//   2. if one of d10, d50, d90 is then off, it gets a grain of its own size: the grain of mass m that lies across that
-//      part of the mass in M, the mass of all. Between these three grains the strata are as above, with whole numbers,
-//      for which the three are shifted by less than half their mass; M is that of which the grains are N in all.
+//   2. if one of d10, d50, d90 is then off, the three get a grain of their own size each, so placed that the mass below
+//      it is less than 10 (50, 90) % of all and the mass up to it more. Strata as above fill the mass between the
+//      three. Their numbers are whole: each of the three grains may be shifted by half its mass for it. The mass of all
+//      is that with which the grains are N.
 #pragma once
 
 #include "rvelab/pack/mass_curve.hpp"
