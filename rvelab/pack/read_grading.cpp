@@ -63,7 +63,10 @@ void read_grading(TableReader& reader, Grading& grading) {
       "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
       "linear in the radius between them; d10_d60: by mass through d10, d50 and d60, linear in the logarithm");
   const bool sieves = curve == GradingName::d10_d60;
-  if (!sieves) grading.curve = GradingCurve(curve);
+  if (sieves)
+    grading.by_mass = true;
+  else
+    grading.curve = GradingCurve(curve);
   reader.choice("passing_by", grading.by_mass, {"number", "mass"}, "measure of the passing fraction");
   const auto smallest = reader.optional_number(
       "smallest_radius_m", "m", radii,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace rvelab::pack {
@@ -119,6 +120,9 @@ double deviation_of(const std::vector<double>& radii, const MassCurve& curve) {
 
 Sample stratified_sample(const MassCurve& curve, std::size_t count, double mean_power) {
   constexpr double near_enough = 0.01;  // up to here the strata alone, whose ends have the mass of the curve
+  // Powers of the radii that no double holds.
+  const bool countable = curve.mean_power() > 0 && std::isfinite(curve.mean_power());
+  if (!countable) return {std::vector(count, curve.by_number().radii.front()), std::numeric_limits<double>::infinity()};
   Sample sample;
   add_strata(curve, 0, 1, count, 1, sample.radii);
   sample.deviation = deviation_of(sample.radii, curve);

@@ -24,7 +24,7 @@ struct Sample {
 };
 
 /// `count` grains of a curve, the same for every seed. `mean_power`: mean of r^dimension to which all are scaled, m^d;
-/// 0: as they are.
+/// 0: as they are. The deviation is infinite where no double holds the powers of the radii.
 Sample stratified_sample(const MassCurve& curve, std::size_t count, double mean_power = 0);
 
 /// Largest of |d/d of the curve - 1| of radii, for d10, d50 and d90 by mass.

@@ -177,6 +177,15 @@ TEST_CASE("a grading with a gap at d50, and one size, can be stratified") {
   for (const double radius : pack::graded_grains(recipe).radius) CHECK(radius == 2e-3);
 }
 
+TEST_CASE("a grading whose masses no double holds is refused") {
+  for (const auto& [smallest, largest] : {std::pair(1e-300, 1e-200), {1e150, 1e200}}) {
+    pack::Recipe recipe = straight(3, 2, 100);
+    recipe.fractions[0].grading.smallest_radius = smallest;
+    recipe.fractions[0].grading.largest_radius = largest;
+    CHECK_THAT(input_error([&] { pack::graded_grains(recipe); }), Contains("more than a million grains"));
+  }
+}
+
 TEST_CASE("stratified sizes are the same for every seed, in another order; a specimen on any number of threads too") {
   pack::Recipe recipe = straight(2, 1.5, 80);
   std::vector<double> first = pack::graded_grains(recipe).radius;
