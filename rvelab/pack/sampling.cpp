@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -43,8 +44,8 @@ struct Block {
 /// Blocks between the grains at d90, d50 and d10, from the largest grains to the smallest.
 struct Design {
   std::vector<Block> blocks;
-  std::vector<double> anchors;  ///< radii at d90, d50, d10
-  double grains = 0;            ///< in all, of which those of the last block need not be whole
+  std::vector<double> fixed;  ///< radii at d90, d50, d10
+  double grains = 0;          ///< in all, of which those of the last block need not be whole
 };
 
 /// The design whose mass is that of `total` grains of the curve; none if the three grains overlap.
@@ -67,7 +68,7 @@ std::optional<Design> design_of(const MassCurve& curve, double total) {
       count = std::max(1.0, count);
     const double end = std::clamp(curve.mass_at(number - count / total), low, high);
     design.blocks.push_back({end, upper, std::size_t(count), above(end)});
-    design.anchors.push_back(radius);
+    design.fixed.push_back(radius);
     design.grains += 1 + count;
     upper = end - width;
   }
@@ -88,7 +89,7 @@ std::optional<Design> design_for(const MassCurve& curve, std::size_t count) {
   auto design = design_of(curve, low);
   if (!design) design = design_of(curve, high);
   if (!design) return std::nullopt;
-  std::size_t larger = design->anchors.size();
+  std::size_t larger = design->fixed.size();
   for (const Block& block : design->blocks) larger += block.count;
   if (larger >= count) return std::nullopt;
   design->blocks.back().count = count - larger;
@@ -96,7 +97,7 @@ std::optional<Design> design_for(const MassCurve& curve, std::size_t count) {
 }
 
 std::vector<double> grains_of(const Design& design, const MassCurve& curve) {
-  std::vector<double> radii = design.anchors;
+  std::vector<double> radii = design.fixed;
   for (const Block& block : design.blocks) {
     if (block.count == 0) continue;
     add_strata(curve, block.from, block.to, block.count, block.wanted / double(block.count), radii);
