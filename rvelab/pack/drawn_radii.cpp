@@ -64,12 +64,12 @@ std::string sufficient_scalping(const GrainFraction& fraction, int dimension, st
   const GrainFraction& fraction = recipe.fractions[f];
   const std::size_t takes = enough(curve, count, recipe.share_by_mass && recipe.fractions.size() > 1);
   const std::string number = std::to_string(std::size_t(std::ceil(double(takes) / double(count) * recipe.number)));
-  throw InputError(
-      fraction.table() + ".sampling = \"stratified\" keeps d10, d50 and d90 by mass within 3 %; with " +
-      std::to_string(count) + " grains one of them is off by " + in_words(0.1 * std::round(1000 * deviation)) +
-      " %; allowed: " + (takes > 0 ? "pack.number = " + number : "more than a million grains of this grading") +
-      sufficient_scalping(fraction, curve.dimension(), count) +
-      "; raise the number, cut the grading, or give sampling = \"random\"");
+  throw InputError(fraction.table() + ".sampling = \"stratified\" keeps d10, d50 and d90 by mass within 3 %; with " +
+                   std::to_string(count) + " grains one of them is off by " +
+                   in_words(0.1 * std::round(1000 * deviation)) + " %; allowed: " +
+                   (takes > 0 ? "pack.number = " + number + " or more" : "more than a million grains of this grading") +
+                   sufficient_scalping(fraction, curve.dimension(), count) +
+                   "; raise the number, cut the grading, or give sampling = \"random\"");
 }
 
 }  // namespace
