@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "rvelab/calibrate/calibrate.hpp"
+#include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/sharing.hpp"
 #include "rvelab/cli/warnings.hpp"
@@ -59,8 +60,8 @@ std::vector<RecordedTest> planned(const Ensemble& ensemble, const std::string& f
   return tests;
 }
 
-/// Reads every specimen once, so that mistakes are told before the first test runs. InputError if two files hold the
-/// same specimen, which would count twice, or if one does not go with the protocol.
+/// Reads every specimen once, so that mistakes are reported before the first test runs. InputError if two files hold
+/// the same specimen, which would count twice, or if one does not go with the protocol.
 int expect_specimens(const Ensemble& ensemble) {
   std::vector<std::uint32_t> digests;
   int dimension = 0;
@@ -68,6 +69,7 @@ int expect_specimens(const Ensemble& ensemble) {
     const Specimen specimen = io::read_specimen(ensemble.files[k]);
     for (const protocol::Protocol& protocol : ensemble.protocols)
       warn_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
+    warn_of_largest_grain(ensemble.files[k], specimen);
     digests.push_back(io::digest(specimen));
     expect_another(ensemble.files, digests);
     if (k > 0 && specimen.cell.dimension != dimension)

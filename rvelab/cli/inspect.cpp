@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/warnings.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/records/quantities.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/specimen/solids.hpp"
@@ -55,28 +58,7 @@ void add_forms(Listing& listing, const Network& network) {
   listing.add("convexity", 1.0);
 }
 
-/// Diameters that 10, 50 and 90 % of the mass do not exceed; the largest grain beside the mass and the cell.
-void add_sizes(Listing& listing, const Network& network) {
-  std::vector<std::pair<double, double>> grains;  // radius, mass
-  double mass = 0;
-  for (const GrainState& grain : network.grains) {
-    grains.emplace_back(grain.radius, grain.mass);
-    mass += grain.mass;
-  }
-  if (!(mass > 0)) return;
-  std::sort(grains.begin(), grains.end());
-  double passed = 0;
-  std::size_t k = 0;
-  for (const auto& [name, part] : {std::pair("d10_m", 0.1), {"d50_m", 0.5}, {"d90_m", 0.9}}) {
-    while (k + 1 < grains.size() && passed + grains[k].second < part * mass) passed += grains[k++].second;
-    listing.add(name, 2 * grains[k].first, "m");
-  }
-  const double largest = 2 * grains.back().first, edge = heights(network.cell).head(network.dimension()).minCoeff();
-  listing.add("largest_grain_mass_share", grains.back().second / mass);
-  listing.add("cell_over_largest_diameter", edge / largest);
-}
-
-void add_state(Listing& listing, const Rve& rve) {
+void add_state(Listing& listing, const Rve& rve, const Json& sizes) {
   const records::MeasuredState state(rve);
   const Network& network = state.network;
   const int dimension = network.dimension();
@@ -85,7 +67,7 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("grains", network.grains.size());
   if (network.has_bodies() && !network.has_solids()) listing.add("members", network.members.size());
   listing.add("contacts", network.contacts.size());
-  add_sizes(listing, network);
+  for (const auto& [key, value] : sizes.items()) listing.add(key, value, unit_of_size(key));
   if (network.has_solids()) add_forms(listing, network);
   const Interactions all = rve.interactions();
   each_interaction_law([&](auto kind, auto law) {
@@ -145,6 +127,16 @@ void add_model(Listing& listing, const Specimen& specimen) {
   listing.add("materials", std::move(materials));
 }
 
+/// Of the recipe that a specimen file holds; nothing of one that is no recipe without other files (clumps of members)
+/// or to this version.
+Json sizes_asked_by(const io::SpecimenOrigin& origin, const std::string& path) {
+  try {
+    return asked_sizes(pack::parse_recipe(origin.recipe, path).recipe);
+  } catch (const InputError&) {
+    return Json::object();
+  }
+}
+
 void run_inspect(const std::string& path, bool as_json) {
   // A run that has just begun has only its journal.
   const bool only_journal = !std::filesystem::exists(path) && std::filesystem::exists(io::journal_of(path));
@@ -153,6 +145,7 @@ void run_inspect(const std::string& path, bool as_json) {
   listing.add("file", path);
   listing.add("kind", has_records ? "records" : "specimen");
   Specimen specimen;
+  Json sizes = Json::object();
   if (has_records) {
     io::RecordedTest test = io::read_recorded_test(path);
     listing.add("protocol", test.result.protocol);
@@ -167,13 +160,16 @@ void run_inspect(const std::string& path, bool as_json) {
       listing.add("seed", origin->seed);
       listing.add("draw", origin->draw);
       listing.add("preparation_friction", origin->preparation_friction);
+      sizes = sizes_asked_by(*origin, path);
     }
   }
   const Rve rve(specimen);
-  add_state(listing, rve);
+  sizes.update(drawn_sizes(specimen));
+  add_state(listing, rve, sizes);
   add_model(listing, specimen);
   listing.print(as_json);
   warn_of_sizes(sizes_of(rve.network()));
+  warn_of_largest_grain(path, specimen);
 }
 
 }  // namespace

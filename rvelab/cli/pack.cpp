@@ -10,6 +10,7 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -79,6 +80,7 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   made["file"] = job.file;
   made["seed"] = job.what.recipe.seed;
   made["void_ratio"] = packing.void_ratio;
+  made.update(drawn_sizes(packing.specimen));
   made["stress_Pa"] = row_major(rve.stress().topLeftCorner(dimension, dimension));
   if (network.has_bodies() && !network.has_solids()) made["members"] = network.members.size();
   made["contacts"] = network.contacts.size();
@@ -119,13 +121,14 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files, std
 
 /// One line per specimen; all results are in --json.
 std::string table_of(const std::vector<Job>& jobs) {
-  std::vector<std::vector<std::string>> rows{
-      {"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
+  std::vector<std::vector<std::string>> rows{{"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain",
+                                              "overlap, %", "friction while packed", "d10, d50, d90, m"}};
   for (const Job& job : jobs) {
     const auto shown = [&](const char* key) { return in_digits(job.made[key].get<double>(), 4); };
     rows.push_back({job.file, job.made["seed"].dump(), job.made["draw"].dump(), shown("void_ratio"),
                     in_digits(job.sizes.pressure, 4), shown("coordination_number"),
-                    two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction")});
+                    two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction"),
+                    shown("d10_m") + ", " + shown("d50_m") + ", " + shown("d90_m")});
   }
   return aligned(rows);
 }
@@ -134,8 +137,12 @@ void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool jso
   Listing listing;
   listing.add("recipe", file.name);
   if (!file.doubts.empty()) listing.add_to_json("unusual", file.doubts);
+  const Json asked = asked_sizes(file.recipe);
+  for (const auto& [key, value] : asked.items()) listing.add(key, value, unit_of_size(key));
   if (jobs.size() == 1) {
-    const auto unit = [](const std::string& key) { return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : ""; };
+    const auto unit = [](const std::string& key) {
+      return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : unit_of_size(key);
+    };
     for (const auto& [key, value] : jobs.front().made.items()) listing.add(key, value, unit(key));
     add_proportions(listing, jobs.front().sizes);
   } else {

@@ -13,6 +13,7 @@
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/ensemble.hpp"
+#include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -238,6 +239,7 @@ void run_test(const RunArguments& arguments) {
   }
   warn_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
   warn_of_shear(protocol, specimen);
+  warn_of_largest_grain(specimen_files(protocol, given).front(), specimen);
   protocol::TestRun run;
   double wall = 0;
   {

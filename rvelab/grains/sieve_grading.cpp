@@ -1,5 +1,6 @@
 #include "rvelab/grains/sieve_grading.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "rvelab/error.hpp"
@@ -64,7 +65,7 @@ Grading sieve_grading(double d10, double d50, double d60) {
   return grading;
 }
 
-std::string wrong_with_sieves(double d10, double d50, double d60) {
+std::string wrong_with_sieves(double d10, double d50, double d60, double scalp_below, double scalp_above) {
   if (d10 == d50 && d50 == d60) return "";
   if (!(d10 < d50 && d50 < d60))
     return "does not lie between d10 and d60; allowed: d10 < d50 < d60, or all three equal; correct the sieve curve";
@@ -74,10 +75,11 @@ std::string wrong_with_sieves(double d10, double d50, double d60) {
     return "lies off the curve from d10 to d60, whose d50 is about " + in_words(1e3 * straight) +
            " mm; allowed: within a factor of 1.5 of it; correct the sieve curve, or give all of it (grading = "
            "\"tabulated\")";
-  const Ends ends = ends_of(d10, d50, d60);
+  Ends ends = ends_of(d10, d50, d60);
+  ends = {std::max(ends.smallest, scalp_below), std::min(ends.largest, scalp_above)};
   if (ends.largest > 100 * ends.smallest)
     return "gives grains from " + in_words(1e3 * ends.smallest) + " to " + in_words(1e3 * ends.largest) +
-           " mm; allowed: a largest grain of at most 100 times the smallest; cut the fine tail";
+           " mm; allowed: a largest grain of at most 100 times the smallest; cut the fine tail (scalp_below_mm)";
   return "";
 }
 

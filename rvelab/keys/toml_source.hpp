@@ -1,5 +1,5 @@
-// Text to TOML, the one way for every file and setting. Of hosts that link none of rvelab's rooms too, hence without a
-// source.
+// Text to TOML, the one way for every file and setting. Of hosts that link none of rvelab's modules too, hence without
+// a source.
 #pragma once
 
 #include <toml++/toml.h>

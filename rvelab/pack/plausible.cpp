@@ -10,7 +10,6 @@
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/table_reader.hpp"
-#include "rvelab/pack/scatter.hpp"
 
 namespace rvelab::pack {
 namespace {
@@ -95,43 +94,6 @@ std::vector<std::string> unusual_overlaps(const Pressed& pressed, const ContactM
     break;  // one line a key
   }
   return found;
-}
-
-std::vector<std::string> too_few_grains(const Recipe& recipe) {
-  // Below three of its diameters the largest grain lies nearly beside its own image, and above a twentieth of the mass
-  // no mean over many grains is left.
-  constexpr double thin = 3, most_share = 0.05;
-  const int d = dimension_of(recipe.shape);
-  std::vector<NumberCurve> curves;
-  for (const GrainFraction& fraction : recipe.fractions) curves.push_back(number_curve(fraction.grading, d));
-  const std::vector<double> parts = parts_of(recipe, curves);
-  const double sum = std::accumulate(parts.begin(), parts.end(), 0.0), number = double(recipe.number);
-  const auto density = [&](std::size_t f) { return recipe.materials[recipe.fractions[f].material].density; };
-  double smallest = curves.front().radii.front(), top = 0, drawn = 0;  // radii: of the curve, of the grains
-  double solid = 0, mass = 0, of_top = 0, of_drawn = 0;                // of one grain on average; of the largest
-  for (std::size_t f = 0; f < curves.size(); ++f) {
-    const double part = parts[f] / sum, volume = grain_volume(recipe.shape, 1, recipe.thickness);
-    const double largest = curves[f].radius_at(1 - 0.5 / std::max(1.0, part * number));
-    const auto mass_of = [&](double radius) { return density(f) * volume * std::pow(radius, d); };
-    smallest = std::min(smallest, curves[f].radii.front());
-    top = std::max(top, curves[f].radii.back());
-    drawn = std::max(drawn, largest);
-    of_top = std::max(of_top, mass_of(curves[f].radii.back()));
-    of_drawn = std::max(of_drawn, mass_of(largest));
-    solid += part * volume * curves[f].mean_power(d);
-    mass += part * density(f) * volume * curves[f].mean_power(d);
-  }
-  const double e = recipe.void_ratio.value_or(d == 2 ? 0.2 : 0.65);
-  const double space = solid * (1 + e) / (d == 2 ? recipe.thickness : 1);  // of a grain with its voids
-  const double edge = std::pow(number * space, 1.0 / d) / (2 * drawn), share = of_drawn / (number * mass);
-  if (edge >= thin && share <= most_share) return {};
-  const double enough = std::max(std::pow(2 * top * thin, d) / space, of_top / (most_share * mass));
-  return {"pack.number = " + std::to_string(recipe.number) + " is few for radii of " + in_words(smallest) + " to " +
-          in_words(top) + " m (1 : " + in_words(top / smallest) + "): the largest grain is " +
-          in_words(0.1 * std::round(1000 * share)) + " % of the mass, and the cell " +
-          in_words(0.01 * std::round(100 * edge)) +
-          " largest diameters long; usual: up to 5 %, and 3 or more, which takes " + in_words(std::ceil(enough)) +
-          " grains of this grading; give more, or a narrower grading"};
 }
 
 namespace {

@@ -31,10 +31,6 @@ void expect_possible(const Pressed& pressed, const ContactModel& model, const st
 std::vector<std::string> unusual_overlaps(const Pressed& pressed, const ContactModel& model,
                                           const std::vector<Material>& materials);
 
-/// Whether a grading asks for more grains than the recipe makes: the cell would be thin beside the largest of them, or
-/// that one so large a part of the mass that it alone makes the result. One line; empty where there are enough.
-std::vector<std::string> too_few_grains(const Recipe& recipe);
-
 /// Time that one draw of a recipe takes on one core, s, within a factor of some 3: from packings that were measured.
 double expected_seconds(const Recipe& recipe);
 

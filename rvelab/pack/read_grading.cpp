@@ -27,11 +27,27 @@ void read_sieves(TableReader& reader, const std::string& curve, Grading& grading
       reader.refuse(name, "contradicts grading = " + as_toml(curve) + "; allowed: one of the two; remove one");
   }
   if (!given || !d10 || !d50 || !d60) return;
-  const std::string wrong = wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
-  if (wrong.empty())
-    grading = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
-  else
+  const std::string wrong =
+      wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60, 2 * grading.scalp_below, 2 * grading.scalp_above);
+  if (wrong.empty()) {
+    Grading sieved = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+    sieved.scalp_below = grading.scalp_below;
+    sieved.scalp_above = grading.scalp_above;
+    grading = sieved;
+  } else {
     reader.mistake("d50_mm", wrong);
+  }
+}
+
+/// Diameters at which the grading is cut.
+void read_scalping(TableReader& reader, Grading& grading) {
+  const auto below = reader.optional_number("scalp_below_mm", "mm", sieves_mm,
+                                            "scalping: grains of a smaller diameter are left out, and the rest of the "
+                                            "curve is the grading; rvelab pack reports what is cut off, by mass");
+  const auto above =
+      reader.optional_number("scalp_above_mm", "mm", sieves_mm, "scalping: grains of a larger diameter are left out");
+  if (below) grading.scalp_below = 5e-4 * *below;
+  if (above) grading.scalp_above = 5e-4 * *above;
 }
 
 /// The names of the gradings; the last is no curve of its own but a table that is made of three diameters.
@@ -47,7 +63,10 @@ void read_grading(TableReader& reader, Grading& grading) {
       "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
       "linear in the radius between them; d10_d60: by mass through d10, d50 and d60, linear in the logarithm");
   const bool sieves = curve == GradingName::d10_d60;
-  if (!sieves) grading.curve = GradingCurve(curve);
+  if (sieves)
+    grading.by_mass = true;
+  else
+    grading.curve = GradingCurve(curve);
   reader.choice("passing_by", grading.by_mass, {"number", "mass"}, "measure of the passing fraction");
   const auto smallest = reader.optional_number(
       "smallest_radius_m", "m", radii,
@@ -63,6 +82,7 @@ void read_grading(TableReader& reader, Grading& grading) {
   const bool tabulated = curve == GradingName::tabulated;
   if (sieves && reader.has("passing_by") && !grading.by_mass)
     reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
+  read_scalping(reader, grading);
   read_sieves(reader, curves[std::size_t(curve)], grading);
   for (const char* name : {"smallest_radius_m", "largest_radius_m", "radii_m", "passing"}) {
     const bool of_table = name[0] == 'r' || name[0] == 'p';

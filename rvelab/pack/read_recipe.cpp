@@ -11,6 +11,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/plausible.hpp"
 #include "rvelab/pack/read_grading.hpp"
+#include "rvelab/pack/recipe_grading.hpp"
 
 namespace rvelab::pack {
 namespace {
@@ -162,6 +163,9 @@ void read_fraction(TableReader& reader, Recipe& recipe, bool ellipsoids) {
                 "fraction of all grains, by pack.share_by; the shares of all [[grains]] add up to 1");
   const std::size_t mistakes = reader.mistakes();
   read_grading(reader, fraction.grading);
+  reader.choice("sampling", fraction.sampling, {"random", "stratified"},
+                "random: a grain from each of N equal parts of the number, at random within it; stratified: sizes, the "
+                "same for every seed, whose d10, d50 and d90 by mass are within 3 % of those of the grading");
   if (reader.mistakes() == mistakes) {
     try {
       check_grading(fraction.grading, fraction.table().c_str());

@@ -1,6 +1,6 @@
 // What a specimen is to be: grains, stress, void ratio, and how it is prepared.
 //
-// This room knows how to make specimens; it uses Rve as any client does and knows no file. Pressures and void ratios
+// This module knows how to make specimens; it uses Rve as any client does and knows no file. Pressures and void ratios
 // are those of the finished specimen, with the friction of its materials.
 #pragma once
 
@@ -15,12 +15,19 @@
 
 namespace rvelab::pack {
 
+/// How sizes are drawn from a grading.
+enum class Sampling {
+  random,     ///< one from each of N equal parts of the number, at random within it
+  stratified  ///< d10, d50 and d90 by mass are those of the grading (sampling.hpp), the same sizes for every seed
+};
+
 /// A part of the grains with a material and a grading of its own.
 struct GrainFraction {
   std::string name = "grains";
   double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
+  Sampling sampling = Sampling::random;
   std::optional<Clump> clump = {};  ///< where the recipe is of clumps: the shape of this fraction
   /// Superellipsoids: half axes along x, y, z of the shape, of which the ratios count, and exponents e (of x and y) and
   /// n (of both and z). bedding_spread is then the largest angle of the z of the shapes from the vertical, directions

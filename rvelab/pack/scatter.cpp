@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/grains/direction.hpp"
+#include "rvelab/pack/drawn_radii.hpp"
 #include "rvelab/specimen/clumps.hpp"
 #include "rvelab/specimen/solids.hpp"
 
@@ -15,25 +16,6 @@ namespace rvelab::pack {
 namespace {
 
 constexpr int most_tries = 2000;
-
-/// How many grains each fraction gets: whole numbers nearest to the shares that add up to the recipe's number.
-std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<NumberCurve>& curves) {
-  std::vector<double> parts = parts_of(recipe, curves);
-  const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
-  std::vector<std::size_t> numbers;
-  std::vector<std::size_t> order(parts.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::size_t given = 0;
-  for (double& part : parts) {
-    part *= double(recipe.number) / sum;
-    numbers.push_back(std::size_t(part));
-    given += numbers.back();
-    part -= double(numbers.back());
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return parts[a] > parts[b]; });
-  for (std::size_t k = 0; given < recipe.number; k = (k + 1) % order.size(), ++given) ++numbers[order[k]];
-  return numbers;
-}
 
 /// Points of a cell in boxes that are at least as wide as the reach of a contact, periodic.
 class Boxes {
@@ -145,6 +127,24 @@ std::vector<double> parts_of(const Recipe& recipe, const std::vector<NumberCurve
   return parts;
 }
 
+std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<NumberCurve>& curves) {
+  std::vector<double> parts = parts_of(recipe, curves);
+  const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
+  std::vector<std::size_t> numbers;
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::size_t given = 0;
+  for (double& part : parts) {
+    part *= double(recipe.number) / sum;
+    numbers.push_back(std::size_t(part));
+    given += numbers.back();
+    part -= double(numbers.back());
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return parts[a] > parts[b]; });
+  for (std::size_t k = 0; given < recipe.number; k = (k + 1) % order.size(), ++given) ++numbers[order[k]];
+  return numbers;
+}
+
 Grains graded_grains(const Recipe& recipe) {
   const int d = dimension_of(recipe.shape);
   std::vector<NumberCurve> curves;
@@ -157,7 +157,7 @@ Grains graded_grains(const Recipe& recipe) {
       throw InputError(recipe.fractions[f].table() + " gets no grain of " + std::to_string(recipe.number) +
                        "; allowed: at least one for each fraction; raise pack.number or the fraction's share");
     }
-    for (const double radius : radii_of(curves[f], numbers[f], uniform)) {
+    for (const double radius : drawn_radii(recipe, f, curves, numbers, uniform)) {
       grains.id.push_back(std::int64_t(grains.id.size()));
       grains.radius.push_back(radius);
       grains.material.push_back(std::int32_t(recipe.fractions[f].material));

@@ -9,8 +9,11 @@ namespace rvelab::pack {
 /// Parts of the number of all grains that the fractions get, with gradings by number `curves`; their sum is any.
 std::vector<double> parts_of(const Recipe& recipe, const std::vector<NumberCurve>& curves);
 
+/// How many grains each fraction gets: whole numbers nearest to the shares that add up to the recipe's number.
+std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<NumberCurve>& curves);
+
 /// The grains of a recipe, all at the origin: radii, materials, lengths and orientations by its gradings and seed, the
-/// same for every draw. InputError if a fraction gets no grain.
+/// same for every draw. InputError if a fraction gets no grain, or too few for stratified sampling.
 Grains graded_grains(const Recipe& recipe);
 
 /// Volume of all grains, m^3.

@@ -1,7 +1,7 @@
 // The search for a void ratio.
 //
 // The void ratio depends on the preparation friction, and on chance: other places of the grains, or a friction that
-// differs by 1e-9 of itself, change it by several thousandths. So every draw (trial packing) places the grains anew,
+// differs by 1e-9 of itself, change it by several thousandths. So every draw (trial packing) places the grains again,
 // with the friction at which the mean curve of the draws so far meets the target. The first one within the tolerance is
 // taken.
 #pragma once

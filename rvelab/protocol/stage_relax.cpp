@@ -12,7 +12,7 @@ namespace {
 using namespace keys;
 
 /// Phases of a relax stage.
-enum Phase : std::int32_t { begun = 1, relaxing };
+enum class RelaxPhase : std::int32_t { begun = 1, relaxing };
 
 struct Relax : KindOf<RelaxStage> {
   const char* name() const override { return "relax"; }
@@ -27,9 +27,9 @@ struct Relax : KindOf<RelaxStage> {
   std::size_t planned_records() const override { return stage.record ? 2 : 0; }
 
   void drive(RunningTest& test) const override {
-    if (test.run.progress.phase == begun) {
+    if (test.run.progress.phase == std::int32_t(RelaxPhase::begun)) {
       if (stage.record) test.record_now(0);
-      test.run.progress.phase = relaxing;
+      test.run.progress.phase = std::int32_t(RelaxPhase::relaxing);
     }
     const Report report = test.relax(stage.unbalanced, stage.max_steps);
     if (report.unbalanced_ratio > stage.unbalanced) {

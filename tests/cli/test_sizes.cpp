@@ -140,6 +140,62 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
   CHECK(Json::parse(here.run(import + " --force --json").output)["stiffness_level"].get<double>() > 10);
 }
 
+TEST_CASE(
+    "pack and inspect print the diameters that a recipe asks for, those of its grains, and what scalping cuts off") {
+  const Workplace here;
+  here.write("small.toml", few_grains);
+  const Json made =
+      here.json("pack small.toml -o P.h5 --set grains.sampling=stratified --set grains.scalp_above_mm=12");
+  const Json shown = here.json("inspect P.h5");
+  // By number every radius from 3 to 6 mm is equally frequent: the mass of discs below r goes with r^3 - 27 mm^3.
+  for (const auto& [key, part] : {std::pair("d10_m", 0.1), {"d50_m", 0.5}, {"d90_m", 0.9}}) {
+    CAPTURE(key);
+    const double asked = 2e-3 * std::cbrt(27 + part * (216 - 27));
+    for (const Json& json : {made, shown}) {
+      CHECK(json["asked_" + std::string(key)].get<double>() == Approx(asked).epsilon(1e-9));
+      CHECK(json[key].get<double>() == Approx(asked).epsilon(0.03));
+      CHECK(json["scalped_above_percent"].get<double>() == Approx(100.0 * (343 - 216) / (343 - 27)).epsilon(1e-9));
+      CHECK(json.count("scalped_below_percent") == 0);
+    }
+    CHECK(made[key] == shown[key]);
+  }
+  CHECK_THAT(here.run("inspect P.h5").output, Contains("asked_d50_m") && Contains("scalped_above_percent       40.19"));
+  // An imported specimen was asked for nothing.
+  here.import_packing("hertz");
+  CHECK(here.json("inspect S.h5").count("asked_d50_m") == 0);
+}
+
+TEST_CASE("a grain that is too large for its specimen is reported by pack, inspect and run, once each") {
+  const Workplace here;
+  here.write("few.toml", few_grains);
+  const Outcome packed = here.run("pack few.toml -o F.h5 --set pack.number=12");
+  CHECK(packed.code == 0);
+  CHECK_THAT(packed.errors, Contains("pack.number = 12 is few") && Contains("usual: up to 5 %, which takes "));
+  for (const char* command : {"inspect F.h5", "run biaxial --specimen F.h5 --set stage.compression.to_strain=0.001"}) {
+    CAPTURE(command);
+    const Outcome shown = here.run(command);
+    INFO(shown.errors);
+    const auto at = shown.errors.find("warning: F.h5: the largest grain has ");
+    REQUIRE(at != std::string::npos);
+    CHECK(shown.errors.find("the largest grain has ", at + 40) == std::string::npos);
+    // As many grains of these sizes as make that one 5 %.
+    const double share = std::stod(shown.errors.substr(at + 37));
+    const auto takes = shown.errors.find("which takes ");
+    REQUIRE(takes != std::string::npos);
+    CHECK(std::stod(shown.errors.substr(takes + 12)) == Approx(12 * share / 5).margin(1.01));
+  }
+  here.succeeds("pack few.toml -o M.h5");
+  CHECK_THAT(here.run("inspect M.h5").errors, !Contains("largest grain"));
+  here.write("grains.csv", "x, y, radius\n0.005, 0.005, 0.00401\n0.015, 0.005, 0.002\n0.005, 0.015, 0.002\n");
+  here.write("material.toml",
+             "[[material]]\nname = \"sand\"\nyoung_modulus_Pa = 8e8\nstiffness_ratio = 0.5\nfriction = 0.4\n");
+  here.succeeds("import grains.csv --cell 0.02,0.02,0.01 --material material.toml -o I.h5");
+  // Discs of radii 4.01, 2 and 2 mm in a cell of 20 mm.
+  CHECK_THAT(here.run("inspect I.h5").errors,
+             Contains("warning: I.h5: the largest grain has 66.8 % of the mass") &&
+                 Contains("the cell is about 2.49 largest diameters wide; usual: 3 or more, which takes 5 grains"));
+}
+
 TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick slab why") {
   const Workplace here;
   std::string text = few_grains;

@@ -100,36 +100,6 @@ TEST_CASE("no shipped recipe is told to be in other units") {
   CHECK(recipes > 12);
 }
 
-TEST_CASE("a grading that asks for more grains is told, with how many it asks for") {
-  const std::string sand = "young_modulus_Pa = 7e9\nfriction = 0.5";
-  const std::string wide =
-      "grading = \"tabulated\"\npassing_by = \"mass\"\nradii_m = [80e-6, 110e-6, 160e-6, 230e-6, 320e-6, 450e-6, "
-      "650e-6, 1000e-6]\npassing = [0, 0.09, 0.22, 0.34, 0.46, 0.62, 0.80, 1]";
-  const auto doubts = [&](const std::string& head, const std::string& radii) {
-    return recipe_of(sand, "100e3", "linear", head, radii).doubts;
-  };
-  const auto few = doubts("shape = \"sphere\"\nnumber = 500", wide);
-  REQUIRE(few.size() == 1);
-  CHECK_THAT(few[0], Contains("pack.number = 500 is few for radii of 8e-05 to 0.001 m (1 : 12.5)") &&
-                         Contains("% of the mass") && Contains("largest diameters long"));
-  // As many as it asks for are enough.
-  const auto at = few[0].find("which takes ") + 12;
-  const long enough = long(std::stod(few[0].substr(at)) * 1.01);
-  CHECK(enough > 1000);
-  CHECK(doubts("shape = \"sphere\"\nnumber = " + std::to_string(enough), wide).empty());
-  CHECK(!doubts("shape = \"sphere\"\nnumber = " + std::to_string(enough / 2), wide).empty());
-  const std::string usual = "smallest_radius_m = 3e-3\nlargest_radius_m = 7e-3";
-  CHECK(doubts("number = 60", usual).empty());
-  CHECK(doubts("number = 10", usual).size() == 1);
-  // One stone in a sand.
-  const pack::RecipeFile stone = recipe_of(sand, "100e3", "linear", "number = 1000",
-                                           "name = \"sand\"\nshare = 0.999\nsmallest_radius_m = 1e-3\nlargest_radius_m "
-                                           "= 1e-3\n[[grains]]\nname = \"stone\"\n"
-                                           "share = 0.001\nsmallest_radius_m = 1e-2\nlargest_radius_m = 1e-2");
-  REQUIRE(stone.doubts.size() == 1);
-  CHECK_THAT(stone.doubts[0], Contains("the largest grain is 9.1 % of the mass"));
-}
-
 TEST_CASE("packings that take long are known beforehand: long blocks with sharp edges, and millions of grains") {
   const auto seconds = [](std::size_t number, const Vector3& half_axes, double exponent) {
     pack::Recipe recipe = test::spheres(number);

@@ -258,7 +258,10 @@ TEST_CASE("a relative density lies between the limits of the recipe, and d10, d5
   const auto grains = sieved.find("grading = \"uniform\"\n");
   if (grains != std::string::npos) sieved.erase(grains, std::string("grading = \"uniform\"\n").size());
   CHECK(message_of(sieved).empty());
-  CHECK(pack::parse_recipe(sieved, "r.toml").recipe.fractions[0].grading.by_mass);
+  const pack::RecipeFile of_sieves = pack::parse_recipe(sieved, "r.toml", {"grains.scalp_above_mm=9"});
+  CHECK(of_sieves.recipe.fractions[0].grading.by_mass);
+  CHECK(of_sieves.recipe.fractions[0].grading.scalp_above == Approx(4.5e-3));
+  CHECK(pack::parse_recipe(of_sieves.resolved, "again.toml").resolved == of_sieves.resolved);
   CHECK_THAT(message_of(sieved, {"grains.d50_mm=8"}), Contains("does not lie between d10 and d60"));
   CHECK_THAT(message_of(sieved, {"grains.passing_by=number"}), Contains("contradicts grading = \"d10_d60\""));
   CHECK_THAT(message_of(small, {"grains.d50_mm=7"}), Contains("contradicts grading = \"uniform\""));
