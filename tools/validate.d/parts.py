@@ -51,6 +51,8 @@ PARTS = [
          packages="lammps yade python3-paraview python3-h5py"),
     Part("recording", 1, "what recording costs", "tools/validate.d/recording $program", times=True),
     Part("pack", 10, "void ratio, stress, fabric and time of twenty specimens each", times=True),
+    Part("preparation", 20, "void ratios and numbers of contacts that agitated specimens reach; states of Agnolin and Roux",
+         targets="rvelab_shared"),
     Part("protocols", 10, "every protocol on the reference packings"),
     Part("control", 60, "what holding a stress costs"),
     Part("held", 120,
