@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "rvelab/cli/ensemble.hpp"
+#include "rvelab/cli/fit_features.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/soil_file.hpp"
@@ -25,7 +26,7 @@ void assume_errors(FitSetup& setup) {
       const bool exact = std::all_of(curve.error.begin(), curve.error.end(), [](double error) { return error == 0; });
       if (!exact || setup.same_specimens) continue;
       fit::assume_scatter(curve);
-      if (!told.insert(curve.name).second) continue;
+      if (test.by_features || !told.insert(curve.name).second) continue;
       tell(curve.name + " has no standard error" + (test.name.empty() ? "" : " in " + test.name) +
            "; that of repeated tests is assumed, " + fit::laboratory_scatter(curve.name) +
            "; a column with _error behind its name gives it");
@@ -172,17 +173,27 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
   setup.parameters = file.parameters;
   setup.settings.insert(setup.settings.begin(), file.settings.begin(), file.settings.end());
   setup.predicts = true;
+  setup.sand = file.sand;
   for (const fit::MeasuredTest& measured : file.measured) {
-    ComparedTest test{.name = measured.name,
-                      .protocol = protocol_path(path_or_name(path, measured.protocol)),
-                      .settings = measured.assignments(),
-                      .pressure = measured.pressure.value_or(0),
-                      .targets = measured.targets,
-                      .curves = {},
-                      .predict = measured.predict};
+    std::vector<fit::Curve> curves;
     if (!measured.curve.empty())
-      test.curves = fit::read_curves(path_or_name(path, measured.curve), measured.selection, tell);
-    setup.tests.push_back(std::move(test));
+      curves = fit::read_curves(path_or_name(path, measured.curve), measured.selection, tell);
+    if (!measured.repeats.empty()) {
+      const auto original = std::find_if(setup.tests.begin(), setup.tests.end(),
+                                         [&](const ComparedTest& test) { return test.name == measured.repeats; });
+      original->repetitions.push_back(std::move(curves));
+      continue;
+    }
+    setup.tests.push_back({.name = measured.name,
+                           .protocol = protocol_path(path_or_name(path, measured.protocol)),
+                           .settings = file.assignments(measured),
+                           .pressure = measured.pressure.value_or(0),
+                           .targets = measured.targets,
+                           .curves = std::move(curves),
+                           .predict = measured.predict,
+                           .by_features = file.compares_features(measured) && !measured.curve.empty(),
+                           .feature_names = measured.features,
+                           .repetitions = {}});
   }
   if (std::all_of(setup.tests.begin(), setup.tests.end(), [](const ComparedTest& test) { return test.predict; }))
     throw InputError("--predict names every test of " + path + "; allowed: all but one; leave one to fit");
@@ -212,6 +223,7 @@ FitSetup setup_of(FitArguments& arguments) {
   expect_parameters(setup);
   read_specimens(setup, arguments);
   expect_runnable(setup);
+  take_features(setup);
   assume_errors(setup);
   return setup;
 }

@@ -156,10 +156,10 @@ void tell_of(const MeasuredTable& table, const Loading& loading, std::size_t col
 }
 
 /// The values of a column at the points, in SI.
-std::vector<double> values_at(const MeasuredTable& table, const Readings& readings, const Loading& loading,
-                              std::size_t column, double factor) {
+std::vector<double> values_at(const MeasuredTable& table, const Readings& readings,
+                              const std::vector<LoadingPoint>& points, std::size_t column, double factor) {
   std::vector<double> values;
-  for (const LoadingPoint& point : loading.points) {
+  for (const LoadingPoint& point : points) {
     const auto& rows = point.rows;
     const auto is_held = [&] {
       return std::all_of(rows.begin(), rows.end(),
@@ -174,6 +174,21 @@ std::vector<double> values_at(const MeasuredTable& table, const Readings& readin
     values.push_back(factor * value);
   }
   return values;
+}
+
+/// Adds the rows behind the loading, of a stress, as long as it falls and has a value.
+void add_unloading(Curve& curve, const MeasuredTable& table, const Readings& readings, const Loading& loading,
+                   const std::vector<Chosen>& columns, std::size_t k) {
+  if (readings.is_strain) return;
+  const auto first = table.number_or_nan(loading.points.front().rows.back(), columns[k].column);
+  double before = loading.points.back().x;
+  for (const std::size_t row : loading.after) {
+    const double x = readings.x[row], y = table.number_or_nan(row, columns[k].column);
+    if (!(x <= before) || !(x > 0) || !std::isfinite(y)) return;
+    before = x;
+    curve.unloaded_x.push_back(columns[0].kind.factor * x);
+    curve.unloaded_y.push_back(columns[k].kind.factor * (curve.name == "strain" ? y - first : y));
+  }
 }
 
 void expect_finite(const MeasuredTable& table, const Curve& curve, std::size_t column) {
@@ -205,7 +220,7 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
                      " is not above 0; allowed: > 0; leave the row out, or begin above it (from)");
   std::vector<std::vector<double>> values;
   for (std::size_t k = 1; k < columns.size(); ++k) {
-    values.push_back(values_at(table, readings, loading, columns[k].column, columns[k].kind.factor));
+    values.push_back(values_at(table, readings, loading.points, columns[k].column, columns[k].kind.factor));
     const std::string& quantity = columns[k].kind.quantity;
     if (quantity == "strain" || (quantity == "volumetric_strain" && loading.counts_from_contact))
       count_from_first(values.back());
@@ -220,7 +235,7 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
   for (std::size_t k = 1; k < columns.size(); ++k) {
     const auto& y = values[k - 1];
     std::vector<double> error(y.size(), 0);
-    if (columns[k].error) error = values_at(table, readings, loading, *columns[k].error, columns[k].kind.factor);
+    if (columns[k].error) error = values_at(table, readings, loading.points, *columns[k].error, columns[k].kind.factor);
     Curve curve{
         columns[k].kind.quantity, abscissa.quantity, {}, {}, {}, features_of(x, y, abscissa.quantity), table.path()};
     for (const std::size_t row : chosen) {
@@ -229,6 +244,9 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
       curve.error.push_back(error[row]);
     }
     expect_finite(table, curve, columns[k].column);
+    curve.all_x = x;
+    curve.all_y = y;
+    add_unloading(curve, table, readings, loading, columns, k);
     curves.push_back(std::move(curve));
   }
   tell_of(table, loading, columns[0].column, tell);
