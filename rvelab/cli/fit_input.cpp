@@ -166,6 +166,23 @@ void merge(fit::SoilFile& file, FitArguments& arguments, const std::string& path
                        keys::nearest_in_words(name, {names.begin(), names.end()}) + "; name one of it");
 }
 
+/// InputError for a key of one test, "measured.NAME.key", of a test that the file does not have.
+void expect_own_keys(const FitSetup& setup, const std::string& path) {
+  std::vector<std::string> own = setup.settings, names;
+  for (const fit::Parameter& parameter : setup.parameters) own.push_back(parameter.key);
+  for (const ComparedTest& test : setup.tests) names.push_back(test.name);
+  for (const std::string& key : own) {
+    if (!key.starts_with(of_one_test)) continue;
+    const std::string rest = key.substr(of_one_test.size());
+    const bool known =
+        std::any_of(names.begin(), names.end(), [&](const std::string& name) { return rest.starts_with(name + "."); });
+    if (!known)
+      throw InputError(key + ": " + path + " has no such test to make" +
+                       keys::nearest_in_words(rest.substr(0, rest.find('.')), names) +
+                       "; allowed: measured.NAME.key of one of its tests; correct the name");
+  }
+}
+
 void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::string& path) {
   expect_options_of_file(arguments);
   fit::SoilFile file = fit::read_soil_file(keys::parse_toml_file(path), path);
@@ -195,6 +212,7 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
                            .feature_names = measured.features,
                            .repetitions = {}});
   }
+  expect_own_keys(setup, path);
   if (std::all_of(setup.tests.begin(), setup.tests.end(), [](const ComparedTest& test) { return test.predict; }))
     throw InputError("--predict names every test of " + path + "; allowed: all but one; leave one to fit");
 }

@@ -34,6 +34,13 @@ bool of_recipe(const std::string& assignment, const FitSetup& setup) {
          (!setup.recipe.empty() && one_of({"contact", "damping", "solver", "material"}));
 }
 
+/// An assignment as this test takes it: "measured.NAME.key=value" is of the test NAME alone; none: of another one.
+std::optional<std::string> own_of(const std::string& assignment, const ComparedTest& compared) {
+  if (!assignment.starts_with(of_one_test)) return assignment;
+  const std::string own = of_one_test + compared.name + ".";
+  return assignment.starts_with(own) ? std::optional(assignment.substr(own.size())) : std::nullopt;
+}
+
 /// Assignments of a test for its recipe, or for its protocol.
 std::vector<std::string> assignments_of(const FitSetup& setup, const ComparedTest& compared,
                                         const Eigen::VectorXd& values, bool for_recipe) {
@@ -43,7 +50,8 @@ std::vector<std::string> assignments_of(const FitSetup& setup, const ComparedTes
     all.push_back(setup.parameters[k].assignment(values[Eigen::Index(k)]));
   std::vector<std::string> chosen;
   for (const std::string& assignment : all)
-    if (of_recipe(assignment, setup) == for_recipe) chosen.push_back(assignment);
+    if (const auto own = own_of(assignment, compared); own && of_recipe(*own, setup) == for_recipe)
+      chosen.push_back(*own);
   return chosen;
 }
 

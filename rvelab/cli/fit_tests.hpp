@@ -54,6 +54,9 @@ struct FitSetup {
   std::size_t fitted_tests() const;
 };
 
+/// Begins a key that is of one test alone: "measured.NAME.target.relative_density".
+inline const std::string of_one_test = "measured.";
+
 /// The tests of one set of parameters, to be made.
 struct FitTest {
   std::size_t number = 0;

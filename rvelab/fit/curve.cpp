@@ -62,8 +62,17 @@ std::vector<std::size_t> bending_rows(const std::vector<double>& x, const std::v
   return chosen;
 }
 
-double value_of(const records::Record& record, const std::string& quantity, int dimension) {
-  if (quantity == "strain") return std::abs(record.strain);
+/// Driving strain of a record; of a path, which counts another one, the axial strain.
+double strain_of(const records::Record& record, const std::string& axis) {
+  const double driving = std::abs(record.strain);
+  if (axis.size() != 1) return driving;
+  const int a = axis[0] - 'x';
+  const double axial = std::abs(1 - record.deformation_gradient(a, a));
+  return std::abs(driving - axial) > 1e-9 + 1e-6 * axial ? axial : driving;
+}
+
+double value_of(const records::Record& record, const std::string& quantity, const std::string& axis, int dimension) {
+  if (quantity == "strain") return strain_of(record, axis);
   if (quantity == "axial_stress") return calibrate::principal_stresses(record.stress, dimension).major;
   const double p = mean_pressure(record.stress, dimension);
   if (quantity == "p") return p;
@@ -262,12 +271,12 @@ void begin_earlier(const records::TestResult& test, int dimension, const Curve& 
   double behind = 0;  // strain that is to come up to the last stage
   for (std::size_t k = all.size() - calibrate::last_stage(test).size(); k > 0; --k) {
     const records::Record& record = all[k - 1];
-    const double at = value_of(record, like.abscissa, dimension);
+    const double at = value_of(record, like.abscissa, test.axis, dimension);
     if (!(at <= x.front())) return;
     if (record.stage != all[k].stage) behind += std::abs(record.strain);
     if (at == x.front()) continue;  // a stage begins with the record that ended the one before
     x.insert(x.begin(), at);
-    y.insert(y.begin(), value_of(record, like.name, dimension) - (like.name == "strain" ? behind : 0));
+    y.insert(y.begin(), value_of(record, like.name, test.axis, dimension) - (like.name == "strain" ? behind : 0));
   }
 }
 
@@ -312,10 +321,10 @@ TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& 
   std::vector<double> x, y;
   if (!test.records.empty()) {
     for (const records::Record& record : calibrate::last_stage(test)) {
-      const double at = value_of(record, like.abscissa, dimension);
+      const double at = value_of(record, like.abscissa, test.axis, dimension);
       if (!x.empty() && !(at > x.back())) continue;  // p wavers about its path
       x.push_back(at);
-      y.push_back(value_of(record, like.name, dimension));
+      y.push_back(value_of(record, like.name, test.axis, dimension));
     }
   }
   if (in_logarithm(like.abscissa)) begin_earlier(test, dimension, like, x, y);

@@ -182,7 +182,7 @@ TEST_CASE("One set of parameters is fitted to some tests of a soil, and predicts
 
 namespace {
 
-/// Forty spheres, shared with the truth; `columns` of truth.csv by their names.
+/// Forty spheres; the curve of the test is truth.csv.
 std::string soil_by_features(const std::string& vary, const std::string& more) {
   return "[fit]\nrecipe = \"karlsruhe\"\ncount = 2\ne_min = 0.677\ne_max = 1.054\ncompare = \"features\"\n"
          "settings = [\"pack.number=40\", \"target.void_ratio_tolerance=0.03\", "
@@ -231,7 +231,7 @@ TEST_CASE("Features of tests with known grains are found again, with a map of de
   const double a = map["intercept"]["mean"], b = map["slope"]["mean"];
   CHECK(a + 0.677 * b == Approx(found["parameters"][1]["mean"].get<double>()));
   CHECK(a + 1.054 * b == Approx(found["parameters"][2]["mean"].get<double>()));
-  REQUIRE(found["features"].size() == 7);  // of T q at 0.1, 0.5, 1 %, E50, largest, last, strain at 95 %; and one of U
+  REQUIRE(found["features"].size() == 8);  // of T q at 0.1, 0.5, 1 %, E50, largest, last, strain at 95 %; and one of U
   for (const auto& each : found["features"])
     if (each["predicted"] == false) CHECK(std::abs(each["off_standard_errors"].get<double>()) < 3);
   const std::string csv = bytes_of(here / "G/features.csv");
