@@ -7,18 +7,12 @@
 #include "rvelab/cli/fit_reach.hpp"
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 namespace rvelab::cli {
 namespace {
 
 using fit::MeasuredFeature;
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
 
 /// The kind of a test, with the parameters at the low ends of their ranges.
 ensemble::TestKind kind_of(const FitSetup& setup, const ComparedTest& test, protocol::Protocol& protocol) {
@@ -38,10 +32,10 @@ void take_from_curves(ComparedTest& test, ensemble::TestKind kind) {
   std::vector<std::string> left_out;
   test.features = fit::measured_features(features, tests, left_out);
   if (test.features.empty())
-    throw InputError(test.curves.front().file + ": has none of the features " + listed(left_out) +
+    throw InputError(test.curves.front().file + ": has none of the features " + keys::listed(left_out) +
                      "; allowed: at least one; give the columns deviator, volumetric_strain or p over axial_strain, or "
                      "axial_strain over axial_stress");
-  if (!left_out.empty()) tell(test.name + " has no " + listed(left_out) + ": left out");
+  if (!left_out.empty()) tell(test.name + " has no " + keys::listed(left_out) + ": left out");
 }
 
 void take_from_targets(ComparedTest& test) {

@@ -190,6 +190,13 @@ void warn_fit(const FitSetup& setup, const FitOutcome& outcome, std::size_t fail
     tell("the best parameters in their ranges miss the targets by " +
          ensemble::with_error(outcome.finding.misfit, std::nan("")) +
          " standard deviations; widen the ranges, vary another key, or give the targets a standard error");
+  std::size_t incomplete = 0;
+  for (const fit::Answer& answer : outcome.finding.answers)
+    if (std::any_of(answer.begin(), answer.end(), [](double value) { return !std::isfinite(value); })) ++incomplete;
+  if (incomplete > 0)
+    tell(std::to_string(incomplete) + " of " + std::to_string(outcome.results.size()) +
+         " sets of parameters did not give every target, and were left out" +
+         fit::most_often_missing(outcome.targets, outcome.finding.answers));
   if (failed == 0) return;
   const auto first = std::find_if(outcome.results.begin(), outcome.results.end(),
                                   [](const FitResult& result) { return !result.failure.empty(); });

@@ -19,19 +19,6 @@ struct Learned {
   std::vector<std::size_t> specimens;
 };
 
-/// "; MEASURE is missing in 7": the target that tests which were carried out lack most often; "" if none does.
-std::string most_often_missing(const Problem& problem, const Finding& so_far) {
-  std::pair<std::size_t, std::size_t> most{0, 0};
-  for (std::size_t k = 0; k < problem.targets.size(); ++k) {
-    std::size_t missing = 0;
-    for (const Answer& answer : so_far.answers)
-      if (answer.size() == problem.targets.size() && !std::isfinite(answer[k])) ++missing;
-    if (missing > most.first) most = {missing, k};
-  }
-  if (most.first == 0) return "";
-  return "; " + problem.targets[most.second].name + " is missing in " + std::to_string(most.first);
-}
-
 Learned learned_from(const Problem& problem, const Finding& so_far) {
   std::vector<std::size_t> good;
   for (std::size_t k = 0; k < so_far.answers.size(); ++k) {
@@ -44,7 +31,8 @@ Learned learned_from(const Problem& problem, const Finding& so_far) {
   if (good.size() < least)
     throw Error("fit: " + std::to_string(good.size()) + " of " + std::to_string(so_far.answers.size()) +
                 " tests gave every target; at least " + std::to_string(least) + " are needed" +
-                most_often_missing(problem, so_far) + "; narrow the ranges of --vary, or spend more tests");
+                most_often_missing(problem.targets, so_far.answers) +
+                "; narrow the ranges of --vary, or spend more tests");
   Learned learned{Eigen::MatrixXd(Eigen::Index(good.size()), problem.parameters),
                   Eigen::MatrixXd(Eigen::Index(good.size()), Eigen::Index(problem.targets.size())),
                   {}};
@@ -136,6 +124,18 @@ void run_batch(const Problem& problem, const RunCandidates& run, const Eigen::Ma
 }
 
 }  // namespace
+
+std::string most_often_missing(const std::vector<Target>& targets, const std::vector<Answer>& answers) {
+  std::pair<std::size_t, std::size_t> most{0, 0};
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    std::size_t missing = 0;
+    for (const Answer& answer : answers)
+      if (answer.size() == targets.size() && !std::isfinite(answer[k])) ++missing;
+    if (missing > most.first) most = {missing, k};
+  }
+  if (most.first == 0) return "";
+  return "; " + targets[most.second].name + " is missing in " + std::to_string(most.first);
+}
 
 std::size_t usual_tests(Eigen::Index parameters) { return std::size_t(24 + 16 * parameters); }
 std::size_t usual_tests_of_features(Eigen::Index parameters) { return std::size_t(24 + 8 * parameters); }

@@ -59,6 +59,9 @@ struct Finding {
 /// same bits. Error if so many tests fail that too few are left.
 Finding search(const Problem& problem, const RunCandidates& run);
 
+/// "; NAME is missing in 7": the target that tests which were carried out lack most often; "" if none does.
+std::string most_often_missing(const std::vector<Target>& targets, const std::vector<Answer>& answers);
+
 /// Tests that are spent without another number: 24 and 16 for each parameter.
 std::size_t usual_tests(Eigen::Index parameters);
 /// Where features alone are fitted: 24 and 8 for each. Of ten sands of five parameters 9, 10, 10 lay in their intervals
