@@ -156,6 +156,7 @@ void merge(fit::SoilFile& file, FitArguments& arguments, const std::string& path
   });
   std::set<std::string> names;
   for (fit::MeasuredTest& test : file.measured) {
+    if (!test.repeats.empty()) continue;  // made with the test that it repeats
     names.insert(test.name);
     if (std::find(arguments.predict.begin(), arguments.predict.end(), test.name) != arguments.predict.end())
       test.predict = true;

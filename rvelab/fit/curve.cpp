@@ -165,10 +165,10 @@ void tell_of(const MeasuredTable& table, const Loading& loading, std::size_t col
 }
 
 /// The values of a column at the points, in SI.
-std::vector<double> values_at(const MeasuredTable& table, const Readings& readings,
-                              const std::vector<LoadingPoint>& points, std::size_t column, double factor) {
+std::vector<double> values_at(const MeasuredTable& table, const Readings& readings, const Loading& loading,
+                              std::size_t column, double factor) {
   std::vector<double> values;
-  for (const LoadingPoint& point : points) {
+  for (const LoadingPoint& point : loading.points) {
     const auto& rows = point.rows;
     const auto is_held = [&] {
       return std::all_of(rows.begin(), rows.end(),
@@ -229,7 +229,7 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
                      " is not above 0; allowed: > 0; leave the row out, or begin above it (from)");
   std::vector<std::vector<double>> values;
   for (std::size_t k = 1; k < columns.size(); ++k) {
-    values.push_back(values_at(table, readings, loading.points, columns[k].column, columns[k].kind.factor));
+    values.push_back(values_at(table, readings, loading, columns[k].column, columns[k].kind.factor));
     const std::string& quantity = columns[k].kind.quantity;
     if (quantity == "strain" || (quantity == "volumetric_strain" && loading.counts_from_contact))
       count_from_first(values.back());
@@ -244,7 +244,7 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
   for (std::size_t k = 1; k < columns.size(); ++k) {
     const auto& y = values[k - 1];
     std::vector<double> error(y.size(), 0);
-    if (columns[k].error) error = values_at(table, readings, loading.points, *columns[k].error, columns[k].kind.factor);
+    if (columns[k].error) error = values_at(table, readings, loading, *columns[k].error, columns[k].kind.factor);
     Curve curve{
         columns[k].kind.quantity, abscissa.quantity, {}, {}, {}, features_of(x, y, abscissa.quantity), table.path()};
     for (const std::size_t row : chosen) {

@@ -243,6 +243,29 @@ TEST_CASE("Features of tests with known grains are found again, with a map of de
   here.succeeds("fit soil.toml --tests 30 -o G --resume --threads 2");
   CHECK(nlohmann::json::parse(bytes_of(here / "G/fit.json")) == found);
   here.refuses("fit soil.toml --set stage.compression.to_strain=0.0119", "beyond the end of the test");
+  here.refuses("fit soil.toml --vary measured.X.target.void_ratio=0.5:0.6", "no such test to make");
+  // What it takes is told after the first sets, long before the end.
+  here.shell(std::string("'") + RVELAB_PROGRAM +
+             "' fit soil.toml --tests 90000 --threads 1 >cost.out 2>cost.err & fit=$!\n"
+             "for k in $(seq 600); do grep -q ' about ' cost.err && break; sleep 0.1; done; kill $fit; wait $fit");
+  CHECK_THAT(
+      bytes_of(here / "cost.err"),
+      Contains("90000 sets of parameters x 1 test, each on one of 2 specimens, then 4 predictions x 2 tests: about ") &&
+          Contains(" on 1 thread, since a set took ") && Contains("for packing"));
+}
+
+TEST_CASE("A key of one test is varied for it alone") {
+  const Workplace here;
+  here.write("truth.csv", "x,q\n0,0\n0.001,40e3\n0.005,100e3\n0.012,120e3\n");
+  // Of two tests alike one gets its own friction, and differs; the other stays as it is.
+  const std::string other =
+      "[[measured]]\nname = \"V\"\nprotocol = \"triaxial\"\npressure_Pa = 100e3\nvoid_ratio = 0.75\n"
+      "curve = \"truth.csv\"\ncolumns = [\"axial_strain=x\", \"deviator_Pa=q\"]\n";
+  here.write("soil.toml", soil_by_features("\"measured.V.material.friction=0.05:0.06\"", other));
+  here.succeeds("fit soil.toml --tests 8 -o F");
+  const auto test = nlohmann::json::parse(bytes_of(here / "F/tests/0001.json"));
+  const auto last = [&](int made) { return test["compared"][made][3].get<double>(); };
+  CHECK(last(1) < 0.8 * last(0));
 }
 
 TEST_CASE("Mistakes of a fit are told before any test") {
