@@ -2,7 +2,8 @@
 
     fit_features.py RVELAB WORK RESULTS
 
-Parameters, the map of densities, and each feature as measured (scatter of laboratories), fitted and predicted. Then, of fitted and predicted tests each, how many features lie within one and two errors."""
+Parameters, the map of densities, and each feature as measured (scatter of laboratories), fitted and predicted. Then, of fitted
+and predicted tests each, how many features lie within one and two errors."""
 
 import csv
 import json
