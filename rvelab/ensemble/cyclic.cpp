@@ -41,6 +41,7 @@ CyclesTo cycles_to(std::span<const records::Record> stage, const std::string& ax
   const bool by_stress = cycles.reverse_at > 0;
   const double first = stresses_of(stage.front().stress, axis, dimension).effective;
   int turns = 0;
+  double made = 0;
   double direction = to_strain < 0 ? -1 : 1, before = 0;
   for (std::size_t k = 1; k < stage.size(); ++k) {
     const double step = stage[k].strain - stage[k - 1].strain;
@@ -51,7 +52,7 @@ CyclesTo cycles_to(std::span<const records::Record> stage, const std::string& ax
     before = step;
     const CyclicStresses at = stresses_of(stage[k].stress, axis, dimension);
     const double part = by_stress ? at.driving / cycles.reverse_at : stage[k].strain / std::abs(to_strain);
-    const double made = cycles_at(turns, direction * part);
+    made = std::max(made, cycles_at(turns, direction * part));  // grains that flow lose the driving stress
     if (std::isnan(found.pore_pressure) && 1 - at.effective / first >= pore_pressure) found.pore_pressure = made;
     if (by_stress && std::isnan(found.strain) && std::abs(stage[k].strain) >= strain) found.strain = made;
   }

@@ -160,4 +160,13 @@ TEST_CASE("Cycles are counted as those of a sine, to a pore pressure and to an a
   const CyclesTo strained = cycles_to(records, "xy", {10, 0}, 0.03, 2);
   CHECK(strained.pore_pressure == Approx(0.95 / 0.3).margin(0.06));  // by the strain, not by the time
   CHECK(std::isnan(strained.strain));
+  // Grains that flow: the stress falls to 0 in the first quarter, while they strain to 3 %. Nothing goes back in time.
+  records.clear();
+  for (int k = 0; k <= 300; ++k) {
+    const double driving = q * (k <= 150 ? k / 200.0 : 0), lateral = k <= 150 ? p0 : 0;
+    records.push_back(biaxial_record(1e-4 * k, 0, lateral + driving, lateral));
+  }
+  const CyclesTo flowing = cycles_to(records, "y", by_stress, 0.1, 2);
+  CHECK(flowing.pore_pressure == Approx(0.25 * 0.75));
+  CHECK(flowing.strain == Approx(0.25 * 0.75));
 }
