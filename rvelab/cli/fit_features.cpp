@@ -34,7 +34,8 @@ void take_from_curves(ComparedTest& test, ensemble::TestKind kind) {
   if (test.features.empty())
     throw InputError(test.curves.front().file + ": has none of the features " + keys::listed(left_out) +
                      "; allowed: at least one; give the columns deviator, volumetric_strain or p over axial_strain, or "
-                     "axial_strain over axial_stress");
+                     "axial_strain over axial_stress, or set compare = \"curves\" for " +
+                     test.name);
   if (!left_out.empty()) tell(test.name + " has no " + keys::listed(left_out) + ": left out");
 }
 

@@ -88,14 +88,18 @@ MeasuredTest read_measured(TableReader& reader) {
       reader.texts("features",
                    "features to compare of the curve, instead of the usual ones of the kind of test; names: "
                    "the page Fitting of the manual");
+  test.compare = reader.choice("compare", "", {"curves", "features"}, "of this test alone, as fit.compare",
+                               "fit.compare; features where some are named");
+  if (test.compare == "curves" && !test.features.empty())
+    reader.mistake("features", "is given with compare = \"curves\"; allowed: one of the two; remove one");
   for (const std::string& name : test.features)
     if (!ensemble::feature_of(name))
       reader.mistake("features", "names " + name + ", which is no feature" +
                                      keys::nearest_in_words(name, ensemble::feature_names()) + "; allowed: " +
                                      keys::listed(ensemble::feature_names()) + ", X a number; correct it");
   if (!test.repeats.empty()) {
-    for (const char* name :
-         {"protocol", "targets", "pressure_Pa", "relative_density", "void_ratio", "settings", "predict", "features"})
+    for (const char* name : {"protocol", "targets", "pressure_Pa", "relative_density", "void_ratio", "settings",
+                             "predict", "features", "compare"})
       reader.refuse(name, "is that of the test that is repeated; remove it");
     if (test.curve.empty()) reader.mistake("curve", "is missing; allowed: the curve of a repeated test; give it");
     return test;
@@ -105,7 +109,7 @@ MeasuredTest read_measured(TableReader& reader) {
   if (test.curve.empty() && test.targets.empty())
     reader.mistake("has neither curve nor targets; allowed: a measured curve (CSV), or measures; give one");
   if (test.curve.empty())
-    for (const char* name : {"columns", "from", "to", "features"})
+    for (const char* name : {"columns", "from", "to", "features", "compare"})
       reader.refuse(name, "is given without a curve; remove it");
   return test;
 }

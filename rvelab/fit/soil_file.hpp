@@ -24,6 +24,7 @@ struct MeasuredTest {
   std::optional<double> void_ratio;        ///< of the specimen
   std::vector<std::string> settings;       ///< KEY=value of this test alone
   bool predict = false;                    ///< not fitted: compared with what the fit predicts
+  std::string compare;                     ///< "curves", "features"; "": as the file says
   std::vector<std::string> features;       ///< names; empty: the usual ones, where features are compared
   std::string repeats;                     ///< name of the test that this one repeats in the laboratory; "": none
 };
@@ -45,6 +46,7 @@ struct SoilFile {
   std::vector<MeasuredTest> measured;
 
   bool compares_features(const MeasuredTest& test) const {
+    if (!test.compare.empty()) return test.compare == "features";
     return compare == Compare::features || !test.features.empty();
   }
   /// Settings of a test, with those that pressure and density stand for.

@@ -65,7 +65,11 @@ TEST_CASE("A soil file compares features where it says so, and repeats a test of
   const fit::SoilFile old = read(fit_table + one_test);
   CHECK(!old.compares_features(old.measured[0]));
   CHECK(read(fit_table + one_test + "features = [\"largest_q_Pa\"]\n").measured[0].features.size() == 1);
+  const fit::SoilFile mixed = read(fit_table + "compare = \"features\"\n" + one_test + "compare = \"curves\"\n");
+  CHECK(!mixed.compares_features(mixed.measured[0]));
   const auto refused = [](const std::string& text) { return input_error([&] { read(text); }); };
+  CHECK_THAT(refused(fit_table + one_test + "compare = \"curves\"\nfeatures = [\"largest_q_Pa\"]\n"),
+             Contains("one of the two"));
   CHECK_THAT(refused(fit_table + one_test + "features = [\"larges_q_Pa\"]\n"),
              Contains("nearest") && Contains("largest_q_Pa"));
   CHECK_THAT(refused(fit_table + one_test + repeated), Contains("points of A") && Contains("fit.compare"));
