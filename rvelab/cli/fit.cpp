@@ -37,6 +37,8 @@ Json described(const std::vector<ComparedTest>& tests) {
       one["targets"].push_back({target.measure, target.value, target.error});
     for (const fit::Curve& curve : test.curves)
       one["curves"].push_back({curve.name, curve.abscissa, curve.x, curve.y, curve.error});
+    for (const fit::MeasuredFeature& each : test.features)
+      one["features"].push_back({each.feature.name, each.value, each.error});
     list.push_back(one);
   }
   return list;
@@ -79,7 +81,7 @@ void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
   io::publish_text(own, text);
 }
 
-/// The targets of the search: scalars, then the points of the curves, of the tests that are fitted.
+/// The targets of the search: scalars, then the points of the curves, then features, of the tests that are fitted.
 std::vector<fit::Target> targets_of(const FitSetup& setup) {
   std::vector<fit::Target> targets;
   int curves = 0;
@@ -92,11 +94,16 @@ std::vector<fit::Target> targets_of(const FitSetup& setup) {
     }
   }
   for (const ComparedTest& test : setup.tests) {
-    if (test.predict) continue;
+    if (test.predict || test.by_features) continue;
     for (const fit::Curve& curve : test.curves) {
       const auto points = fit::targets_of(curve, curves++, test.name);
       targets.insert(targets.end(), points.begin(), points.end());
     }
+  }
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    const auto features = fit::targets_of(test.features, curves, test.name);
+    targets.insert(targets.end(), features.begin(), features.end());
   }
   return targets;
 }
@@ -110,7 +117,15 @@ fit::Answer answer_of(const FitSetup& setup, const FitResult& result) {
     for (const fit::ScalarTarget& target : test.targets) answer.push_back(measure_of(result, made, target.measure));
     ++made;
   }
-  for (const auto& curve : result.curves) answer.insert(answer.end(), curve.begin(), curve.end());
+  std::size_t number = 0;  // of the curve, over the tests that were made
+  for (const ComparedTest& test : setup.tests) {
+    if (test.predict) continue;
+    for (std::size_t k = 0; k < test.curves.size(); ++k, ++number) {
+      const auto& curve = result.curves.at(number);
+      if (!test.by_features) answer.insert(answer.end(), curve.begin(), curve.end());
+    }
+  }
+  for (const auto& features : result.compared) answer.insert(answer.end(), features.begin(), features.end());
   return answer;
 }
 
@@ -140,8 +155,11 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
   problem.targets = targets_of(setup);
   problem.specimens = setup.specimen_count;
   problem.same_specimens = setup.same_specimens;
-  problem.tests = std::size_t(arguments.tests.value_or(long(fit::usual_tests(problem.parameters))));
+  const bool by_features = setup.has_features() && !setup.has_curves();
+  problem.tests = std::size_t(arguments.tests.value_or(
+      long(by_features ? fit::usual_tests_of_features(problem.parameters) : fit::usual_tests(problem.parameters))));
   problem.batch = std::size_t(arguments.batch.value_or(8));
+  CostNotice cost(setup, problem.tests, arguments.threads);
   FitOutcome outcome;
   outcome.targets = problem.targets;
   outcome.finding = fit::search(problem, [&](const std::vector<fit::Candidate>& candidates) {
@@ -150,7 +168,7 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
       tests.push_back({candidate.number, values_at(setup, candidate.point), candidate.specimen});
     }
     std::vector<fit::Answer> answers;
-    for (FitResult& result : made(setup, tests, arguments.folder, arguments.threads, problem.tests)) {
+    for (FitResult& result : made(setup, tests, arguments.folder, arguments.threads, problem.tests, &cost)) {
       answers.push_back(answer_of(setup, result));
       outcome.results.push_back(std::move(result));
     }
@@ -226,7 +244,9 @@ void add_fit(CLI::App& app) {
                      "or a recipe: each test packs its own specimen, whose keys may be varied");
   command.add_option("--count", arguments->count, "specimens of the recipe, one a seed; default 5")
       ->check(CLI::Range(1, 1'000'000));
-  command.add_option("--tests", arguments->tests, "tests to spend; default 24 and 16 for each parameter")
+  command
+      .add_option("--tests", arguments->tests,
+                  "tests to spend; default 24 and 16 for each parameter, 8 where only features are fitted")
       ->check(CLI::Range(8, 100'000));
   command.add_option("--batch", arguments->batch, "tests between two evaluations of the results, default 8")
       ->check(CLI::Range(1, 10'000));

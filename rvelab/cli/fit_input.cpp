@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "rvelab/cli/ensemble.hpp"
+#include "rvelab/cli/fit_features.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/soil_file.hpp"
@@ -25,7 +26,7 @@ void assume_errors(FitSetup& setup) {
       const bool exact = std::all_of(curve.error.begin(), curve.error.end(), [](double error) { return error == 0; });
       if (!exact || setup.same_specimens) continue;
       fit::assume_scatter(curve);
-      if (!told.insert(curve.name).second) continue;
+      if (test.by_features || !told.insert(curve.name).second) continue;
       tell(curve.name + " has no standard error" + (test.name.empty() ? "" : " in " + test.name) +
            "; that of repeated tests is assumed, " + fit::laboratory_scatter(curve.name) +
            "; a column with _error behind its name gives it");
@@ -155,6 +156,7 @@ void merge(fit::SoilFile& file, FitArguments& arguments, const std::string& path
   });
   std::set<std::string> names;
   for (fit::MeasuredTest& test : file.measured) {
+    if (!test.repeats.empty()) continue;  // made with the test that it repeats
     names.insert(test.name);
     if (std::find(arguments.predict.begin(), arguments.predict.end(), test.name) != arguments.predict.end())
       test.predict = true;
@@ -165,6 +167,23 @@ void merge(fit::SoilFile& file, FitArguments& arguments, const std::string& path
                        keys::nearest_in_words(name, {names.begin(), names.end()}) + "; name one of it");
 }
 
+/// InputError for a key of one test, "measured.NAME.key", of a test that the file does not have.
+void expect_own_keys(const FitSetup& setup, const std::string& path) {
+  std::vector<std::string> own = setup.settings, names;
+  for (const fit::Parameter& parameter : setup.parameters) own.push_back(parameter.key);
+  for (const ComparedTest& test : setup.tests) names.push_back(test.name);
+  for (const std::string& key : own) {
+    if (!key.starts_with(of_one_test)) continue;
+    const std::string rest = key.substr(of_one_test.size());
+    const bool known =
+        std::any_of(names.begin(), names.end(), [&](const std::string& name) { return rest.starts_with(name + "."); });
+    if (!known)
+      throw InputError(key + ": " + path + " has no such test to make" +
+                       keys::nearest_in_words(rest.substr(0, rest.find('.')), names) +
+                       "; allowed: measured.NAME.key of one of its tests; correct the name");
+  }
+}
+
 void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::string& path) {
   expect_options_of_file(arguments);
   fit::SoilFile file = fit::read_soil_file(keys::parse_toml_file(path), path);
@@ -172,18 +191,29 @@ void add_tests_of_file(FitSetup& setup, FitArguments& arguments, const std::stri
   setup.parameters = file.parameters;
   setup.settings.insert(setup.settings.begin(), file.settings.begin(), file.settings.end());
   setup.predicts = true;
+  setup.sand = file.sand;
   for (const fit::MeasuredTest& measured : file.measured) {
-    ComparedTest test{.name = measured.name,
-                      .protocol = protocol_path(path_or_name(path, measured.protocol)),
-                      .settings = measured.assignments(),
-                      .pressure = measured.pressure.value_or(0),
-                      .targets = measured.targets,
-                      .curves = {},
-                      .predict = measured.predict};
+    std::vector<fit::Curve> curves;
     if (!measured.curve.empty())
-      test.curves = fit::read_curves(path_or_name(path, measured.curve), measured.selection, tell);
-    setup.tests.push_back(std::move(test));
+      curves = fit::read_curves(path_or_name(path, measured.curve), measured.selection, tell);
+    if (!measured.repeats.empty()) {
+      const auto original = std::find_if(setup.tests.begin(), setup.tests.end(),
+                                         [&](const ComparedTest& test) { return test.name == measured.repeats; });
+      original->repetitions.push_back(std::move(curves));
+      continue;
+    }
+    setup.tests.push_back({.name = measured.name,
+                           .protocol = protocol_path(path_or_name(path, measured.protocol)),
+                           .settings = file.assignments(measured),
+                           .pressure = measured.pressure.value_or(0),
+                           .targets = measured.targets,
+                           .curves = std::move(curves),
+                           .predict = measured.predict,
+                           .by_features = file.compares_features(measured) && !measured.curve.empty(),
+                           .feature_names = measured.features,
+                           .repetitions = {}});
   }
+  expect_own_keys(setup, path);
   if (std::all_of(setup.tests.begin(), setup.tests.end(), [](const ComparedTest& test) { return test.predict; }))
     throw InputError("--predict names every test of " + path + "; allowed: all but one; leave one to fit");
 }
@@ -212,6 +242,7 @@ FitSetup setup_of(FitArguments& arguments) {
   expect_parameters(setup);
   read_specimens(setup, arguments);
   expect_runnable(setup);
+  take_features(setup);
   assume_errors(setup);
   return setup;
 }

@@ -86,6 +86,11 @@ std::vector<ComparedValue> compared_values(const FitSetup& setup, const std::vec
   return all;
 }
 
+/// " (3 of 8)" where the others do not reach a measure: cycles to an end that did not come.
+std::string of_all(std::size_t n, std::size_t all) {
+  return n == all ? "" : " (" + std::to_string(n) + " of " + std::to_string(all) + ")";
+}
+
 std::string role(const ComparedTest& test) { return test.predict ? "predicted" : "fitted"; }
 
 }  // namespace
@@ -108,7 +113,9 @@ std::string predictions_text(const FitSetup& setup, const std::vector<FitResult>
   for (const ComparedValue& each : compared_values(setup, predictions))
     rows.push_back({each.test.name, role(each.test), each.measured.measure, two_digits(each.percent()),
                     two_digits(each.errors()), in_digits(each.measured.value, 3),
-                    ensemble::with_error(each.found.mean, each.found.standard_deviation), "", "", "", "", "", ""});
+                    ensemble::with_error(each.found.mean, each.found.standard_deviation) +
+                        of_all(each.found.n, predictions.size()),
+                    "", "", "", "", "", ""});
   return "\n" + aligned(rows, 3, 150);
 }
 
@@ -148,7 +155,8 @@ Json predictions_json(const FitSetup& setup, const std::vector<FitResult>& predi
                     {"off_standard_errors", each.errors()},
                     {"measured", each.measured.value},
                     {"mean", each.found.mean},
-                    {"standard_deviation", each.found.standard_deviation}});
+                    {"standard_deviation", each.found.standard_deviation},
+                    {"n", each.found.n}});
   return list;
 }
 

@@ -63,13 +63,29 @@ void expect_reach(const fit::Curve& curve, const protocol::Stage& last, const pr
   }
 }
 
+/// Null: no stage records.
+const protocol::Stage* last_recorded(const protocol::Protocol& protocol) {
+  const auto last = std::find_if(protocol.stages.rbegin(), protocol.stages.rend(),
+                                 [](const protocol::Stage& stage) { return stage.what->planned_records() > 0; });
+  return last == protocol.stages.rend() ? nullptr : &*last;
+}
+
 }  // namespace
 
 void expect_reach(const ComparedTest& compared, const protocol::Protocol& protocol) {
-  const auto last = std::find_if(protocol.stages.rbegin(), protocol.stages.rend(),
-                                 [](const protocol::Stage& stage) { return stage.what->planned_records() > 0; });
-  if (last == protocol.stages.rend()) return;
+  const protocol::Stage* last = last_recorded(protocol);
+  if (last == nullptr) return;
   for (const fit::Curve& curve : compared.curves) expect_reach(curve, *last, protocol);
+}
+
+void expect_reach(const ensemble::Feature& feature, const protocol::Protocol& protocol) {
+  using namespace protocol;
+  const Stage* last = last_recorded(protocol);
+  if (last == nullptr) return;
+  const double end = strain_at_end<CompressionStage, SimpleShearStage, DeviatoricStage, FlowStage>(*last);
+  if (feature.at > end * (1 + 1e-9))
+    throw InputError(feature.name + " lies beyond the end of the test, stage." + last->name + ".to_strain = " +
+                     in_words(end) + "; allowed: a feature within its test; set to_strain, or leave it out");
 }
 
 }  // namespace rvelab::cli

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 #include "rvelab/cli/columns.hpp"
+#include "rvelab/cli/fit_features.hpp"
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/posterior.hpp"
@@ -43,6 +45,29 @@ Json json_of(const Interval& found) {
       {"mean", found.mean}, {"standard_deviation", found.deviation}, {"low_95", found.low}, {"high_95", found.high}};
 }
 
+/// Void ratio of the model = intercept + slope (that of the sand), where limits of the recipe are fitted: both stand
+/// for the same relative density.
+struct DensityMap {
+  Interval intercept, slope;
+};
+std::optional<DensityMap> density_map(const FitSetup& setup, const fit::Finding& finding) {
+  const auto limit = [&](const char* key) -> std::optional<Eigen::VectorXd> {
+    for (std::size_t k = 0; k < setup.parameters.size(); ++k)
+      if (setup.parameters[k].key == std::string("target.") + key)
+        return values_of(setup.parameters[k], finding.sample.col(Eigen::Index(k)));
+    return std::nullopt;
+  };
+  const auto e_min = limit("e_min"), e_max = limit("e_max");
+  if (!setup.sand || !e_min || !e_max) return std::nullopt;
+  const Eigen::VectorXd slope = (*e_max - *e_min) / (setup.sand->e_max - setup.sand->e_min);
+  return DensityMap{interval_of(*e_max - slope * setup.sand->e_max), interval_of(slope)};
+}
+
+std::vector<std::string> row_of(const std::string& name, const Interval& found) {
+  return {name, ensemble::with_error(found.mean, found.deviation),
+          in_digits_of(found.low, found.deviation) + " to " + in_digits_of(found.high, found.deviation)};
+}
+
 std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
   std::string text = "test,specimen";
   for (const fit::Parameter& parameter : setup.parameters) text += "," + parameter.key;
@@ -64,10 +89,10 @@ std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
 std::string curves_csv(const FitSetup& setup, const FitOutcome& outcome) {
   std::string text = "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95,test\n";
   Eigen::Index column = 0;
-  for (const fit::Target& target : outcome.targets) column += target.curve < 0 ? 1 : 0;
+  for (const fit::Target& target : outcome.targets) column += target.curve < 0 ? 1 : 0;  // features stand last
   int number = 0;
   for (const ComparedTest& test : setup.tests) {
-    if (test.predict) continue;
+    if (test.predict || test.by_features) continue;
     for (const fit::Curve& curve : test.curves) {
       ++number;
       for (std::size_t point = 0; point < curve.x.size(); ++point, ++column) {
@@ -99,9 +124,11 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
     json["targets"].push_back({{"name", target.name},
                                {"value", target.value},
                                {"standard_error", target.error},
-                               {"of_curve", target.curve >= 0},
+                               {"of_curve", target.curve >= 0 && !target.common},
                                {"fit", json_of(interval_of(finding.predicted.col(Eigen::Index(k))))}});
   }
+  if (const auto map = density_map(setup, finding))
+    json["density_map"] = {{"intercept", json_of(map->intercept)}, {"slope", json_of(map->slope)}};
   json["misfit"] = finding.misfit;
   json["widening"] = finding.widening;
   json["specimens"] = setup.specimen_count;
@@ -121,7 +148,10 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
     sample[setup.parameters[p].key] = std::vector<double>(values.begin(), values.end());
   }
   json["posterior_sample"] = sample;
-  if (!outcome.predictions.empty()) json["predictions"] = predictions_json(setup, outcome.predictions);
+  if (!outcome.predictions.empty()) {
+    json["predictions"] = predictions_json(setup, outcome.predictions);
+    if (setup.has_features()) json["features"] = features_json(setup, outcome.predictions);
+  }
   return json;
 }
 
@@ -136,6 +166,9 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
                     in_words(parameter.low) + " to " + in_words(parameter.high)});
   }
   std::string text = aligned(rows) + "\n";
+  if (const auto map = density_map(setup, finding))
+    text += "density map: void ratio of the model = a + b (that of the sand)\n" +
+            aligned({{"", "mean +- sd", "95 % interval"}, row_of("a", map->intercept), row_of("b", map->slope)}) + "\n";
   rows = {{"target", "measured", "fit: mean +- sd"}};
   for (std::size_t k = 0; k < outcome.targets.size(); ++k) {
     const fit::Target& target = outcome.targets[k];
@@ -157,6 +190,13 @@ void warn_fit(const FitSetup& setup, const FitOutcome& outcome, std::size_t fail
     tell("the best parameters in their ranges miss the targets by " +
          ensemble::with_error(outcome.finding.misfit, std::nan("")) +
          " standard deviations; widen the ranges, vary another key, or give the targets a standard error");
+  std::size_t incomplete = 0;
+  for (const fit::Answer& answer : outcome.finding.answers)
+    if (std::any_of(answer.begin(), answer.end(), [](double value) { return !std::isfinite(value); })) ++incomplete;
+  if (incomplete > 0)
+    tell(std::to_string(incomplete) + " of " + std::to_string(outcome.results.size()) +
+         " sets of parameters did not give every target, and were left out" +
+         fit::most_often_missing(outcome.targets, outcome.finding.answers));
   if (failed == 0) return;
   const auto first = std::find_if(outcome.results.begin(), outcome.results.end(),
                                   [](const FitResult& result) { return !result.failure.empty(); });
@@ -175,18 +215,21 @@ void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::str
     publish(folder, "fit.csv", tests_csv(setup, outcome));
     if (setup.has_curves()) publish(folder, "curves.csv", curves_csv(setup, outcome));
     if (setup.predicts) publish(folder, "predictions.csv", predictions_csv(setup, outcome.predictions));
+    if (setup.predicts && setup.has_features())
+      publish(folder, "features.csv", features_csv(setup, outcome.predictions));
   }
   if (json) {
     std::cout << object << std::flush;
   } else {
-    std::cout << as_text(setup, outcome) << predictions_text(setup, outcome.predictions) << "\ntests   "
-              << outcome.results.size() << " on " << setup.specimen_count << " specimens"
-              << (failed > 0 ? ", " + std::to_string(failed) + " failed" : "") << "\nwall_s  "
-              << in_words(outcome.wall_seconds) << "\n";
+    std::cout << as_text(setup, outcome) << predictions_text(setup, outcome.predictions)
+              << features_text(setup, outcome.predictions) << "\ntests   " << outcome.results.size() << " on "
+              << setup.specimen_count << " specimens" << (failed > 0 ? ", " + std::to_string(failed) + " failed" : "")
+              << "\nwall_s  " << in_words(outcome.wall_seconds) << "\n";
     if (!folder.empty())
       std::cout << "files   " << folder << "/fit.json, fit.csv" << (setup.has_curves() ? ", curves.csv" : "")
-                << (setup.predicts ? ", predictions.csv" : "") << "\nfigure  /usr/bin/python3 tools/plot/fit.py "
-                << folder << " -o fit.png\n";
+                << (setup.predicts ? ", predictions.csv" : "")
+                << (setup.predicts && setup.has_features() ? ", features.csv" : "")
+                << "\nfigure  /usr/bin/python3 tools/plot/fit.py " << folder << " -o fit.png\n";
     std::cout << std::flush;
   }
   warn_fit(setup, outcome, failed);

@@ -1,12 +1,14 @@
 #include "rvelab/cli/fit_tests.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
+#include <thread>
 
 #include "rvelab/cli/fit_reach.hpp"
 #include "rvelab/cli/interrupt.hpp"
@@ -32,6 +34,13 @@ bool of_recipe(const std::string& assignment, const FitSetup& setup) {
          (!setup.recipe.empty() && one_of({"contact", "damping", "solver", "material"}));
 }
 
+/// An assignment as this test takes it: "measured.NAME.key=value" is of the test NAME alone; none: of another one.
+std::optional<std::string> own_of(const std::string& assignment, const ComparedTest& compared) {
+  if (!assignment.starts_with(of_one_test)) return assignment;
+  const std::string own = of_one_test + compared.name + ".";
+  return assignment.starts_with(own) ? std::optional(assignment.substr(own.size())) : std::nullopt;
+}
+
 /// Assignments of a test for its recipe, or for its protocol.
 std::vector<std::string> assignments_of(const FitSetup& setup, const ComparedTest& compared,
                                         const Eigen::VectorXd& values, bool for_recipe) {
@@ -41,12 +50,9 @@ std::vector<std::string> assignments_of(const FitSetup& setup, const ComparedTes
     all.push_back(setup.parameters[k].assignment(values[Eigen::Index(k)]));
   std::vector<std::string> chosen;
   for (const std::string& assignment : all)
-    if (of_recipe(assignment, setup) == for_recipe) chosen.push_back(assignment);
+    if (const auto own = own_of(assignment, compared); own && of_recipe(*own, setup) == for_recipe)
+      chosen.push_back(*own);
   return chosen;
-}
-
-protocol::Protocol protocol_of(const FitSetup& setup, const ComparedTest& compared, const Eigen::VectorXd& values) {
-  return protocol::read_protocol(compared.protocol, assignments_of(setup, compared, values, false));
 }
 
 /// The specimens of one set of parameters: given, or packed once for each set of assignments.
@@ -62,15 +68,34 @@ class Specimens {
     Workers alone(1);
     pack::PackWatch watch;
     watch.stop = &stop_on_signals();
+    const auto begin = Clock::now();
     Specimen specimen = pack::pack(file.member(file.recipe.seed + test_.specimen).recipe, alone, watch).specimen;
+    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
     return packed_.emplace(assignments, std::move(specimen)).first->second;
   }
+  double seconds() const { return seconds_; }  ///< for packing
 
  private:
   const FitSetup& setup_;
   const FitTest& test_;
   std::map<std::vector<std::string>, Specimen> packed_;
+  double seconds_ = 0;
 };
+
+/// Values of the features of a test, up to the end of its measured curve.
+std::vector<double> features_in(const ComparedTest& compared, const records::TestResult& test, int dimension) {
+  const bool ends = !compared.curves.empty() && compared.curves.front().abscissa == "strain";
+  const double to_strain = ends ? compared.curves.front().x.back() : std::numeric_limits<double>::infinity();
+  std::optional<ensemble::TestPath> paths[2];
+  std::vector<double> values;
+  for (const fit::MeasuredFeature& each : compared.features) {
+    const bool over_stress = each.feature.over_stress();
+    auto& path = paths[over_stress ? 1 : 0];
+    if (!path) path = ensemble::path_of(test, dimension, over_stress, to_strain);
+    values.push_back(ensemble::value_of(each.feature, *path));
+  }
+  return values;
+}
 
 /// Runs one test and adds what it gave; false: it was stopped.
 bool add_test(const FitSetup& setup, const FitTest& test, const ComparedTest& compared, Specimens& specimens,
@@ -88,13 +113,16 @@ bool add_test(const FitSetup& setup, const FitTest& test, const ComparedTest& co
     result.curves.push_back(std::move(curve.y));
     result.features.push_back(curve.features);
   }
+  result.compared.push_back(features_in(compared, run.result, dimension));
   return true;
 }
 
 /// Makes the tests of one set of parameters; none: they were stopped.
-std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, const protocol::Runner& runner) {
+std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, const protocol::Runner& runner,
+                                     CostNotice* cost) {
   FitResult result;
   Specimens specimens(setup, test);
+  const auto begin = Clock::now();
   for (const ComparedTest& compared : setup.tests) {
     if (compared.predict && !test.predicting) continue;
     try {
@@ -102,9 +130,10 @@ std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test,
     } catch (const Interrupted&) {
       return std::nullopt;
     } catch (const Error& error) {
-      return FitResult{{}, {}, {}, (compared.name.empty() ? "" : compared.name + ": ") + error.what()};
+      return FitResult{{}, {}, {}, {}, (compared.name.empty() ? "" : compared.name + ": ") + error.what()};
     }
   }
+  if (cost != nullptr) cost->took(std::chrono::duration<double>(Clock::now() - begin).count(), specimens.seconds());
   return result;
 }
 
@@ -148,6 +177,7 @@ void keep(const std::string& path, const FitTest& test, const FitResult& result)
             {"measures", numbers(result.measures)},
             {"curves", numbers(result.curves)},
             {"features", features_of(result)},
+            {"compared", numbers(result.compared)},
             {"failure", result.failure}};
   io::publish_text(path, json_text(json));
 }
@@ -164,7 +194,8 @@ std::optional<FitResult> kept(const std::string& path, const FitTest& test) {
     if (!same)
       throw InputError(path + ": is of another test; allowed with --resume: the same fit; start again with --force");
     return FitResult{read_numbers(json.at("measures")), read_numbers(json.at("curves")),
-                     read_features(json.at("features")), json.at("failure").get<std::string>()};
+                     read_features(json.at("features")), read_numbers(json.value("compared", Json::array())),
+                     json.at("failure").get<std::string>()};
   } catch (const Json::exception&) {
     throw InputError(path + ": is damaged; allowed: what `rvelab fit` wrote; remove the file, and go on with --resume");
   }
@@ -172,12 +203,18 @@ std::optional<FitResult> kept(const std::string& path, const FitTest& test) {
 
 }  // namespace
 
+protocol::Protocol protocol_of(const FitSetup& setup, const ComparedTest& compared, const Eigen::VectorXd& values) {
+  return protocol::read_protocol(compared.protocol, assignments_of(setup, compared, values, false));
+}
+
 bool FitSetup::has_targets() const {
-  return has_curves() ||
-         std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.targets.empty(); });
+  return std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) {
+    return !test.targets.empty() || !test.curves.empty() || !test.features.empty();
+  });
 }
 bool FitSetup::has_curves() const {
-  return std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.curves.empty(); });
+  return std::any_of(tests.begin(), tests.end(),
+                     [](const ComparedTest& test) { return !test.curves.empty() && !test.by_features; });
 }
 
 double measure_of(const FitResult& result, std::size_t made, const std::string& measure) {
@@ -209,8 +246,46 @@ void expect_runnable(const FitSetup& setup) {
   }
 }
 
+bool FitSetup::has_features() const {
+  return std::any_of(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.features.empty(); });
+}
+std::size_t FitSetup::fitted_tests() const {
+  return std::size_t(std::count_if(tests.begin(), tests.end(), [](const ComparedTest& test) { return !test.predict; }));
+}
+
+CostNotice::CostNotice(const FitSetup& setup, std::size_t sets, unsigned threads)
+    : setup_(setup),
+      sets_(sets),
+      lanes_(std::min<std::size_t>(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency()), sets)) {}
+
+void CostNotice::took(double seconds, double packing) {
+  const std::lock_guard lock(mutex_);
+  seconds_ += seconds;
+  packing_ += packing;
+  if (++made_ != lanes_) return;
+  const std::size_t tests = setup_.fitted_tests(), all = setup_.tests.size(),
+                    predictions = setup_.predicts ? 2 * setup_.specimen_count : 0;
+  const double each = seconds_ / double(lanes_);
+  const double rest =
+      each * (double(sets_ - lanes_) + double(predictions) * double(all) / double(tests)) / double(lanes_);
+  constexpr double worth_saying = 30;  // s
+  if (rest < worth_saying) return;
+  const auto count = [](std::size_t n, const char* noun) {
+    return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+  };
+  tell(count(sets_, "set") + " of parameters x " + count(tests, "test") + ", each on one of " +
+       count(setup_.specimen_count, "specimen") +
+       (predictions > 0 ? ", then " + count(predictions, "prediction") + " x " + count(all, "test") : "") + ": about " +
+       duration_in_words(rest) + " on " + count(lanes_, "thread") + ", since a set took " +
+       in_words(std::round(10 * each) / 10) + " s" +
+       (setup_.recipe.empty()
+            ? ""
+            : ", " + in_words(std::round(10 * packing_ / double(lanes_)) / 10) + " s of it for packing") +
+       "; to shorten it: --tests, pack.number, target.void_ratio_tolerance");
+}
+
 std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& tests, const std::string& folder,
-                            unsigned threads, std::size_t planned) {
+                            unsigned threads, std::size_t planned, CostNotice* cost) {
   std::vector<std::optional<FitResult>> results(tests.size());
   {
     ProgressLine progress(planned);
@@ -219,7 +294,7 @@ std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& t
     runner.each(tests.size(), [&](std::size_t k) {
       if (!folder.empty()) results[k] = kept(file_of(folder, tests[k]), tests[k]);
       if (!results[k]) {
-        results[k] = carried_out(setup, tests[k], runner);
+        results[k] = carried_out(setup, tests[k], runner, cost);
         if (results[k] && !folder.empty()) keep(file_of(folder, tests[k]), tests[k], *results[k]);
       }
       if (results[k]) runner.done(tests[k].number);

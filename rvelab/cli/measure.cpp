@@ -9,6 +9,7 @@
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/ensemble/features.hpp"
 #include "rvelab/ensemble/loops.hpp"
 #include "rvelab/ensemble/measures.hpp"
 #include "rvelab/ensemble/second_order_work.hpp"
@@ -16,6 +17,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/acoustic.hpp"
 #include "rvelab/measure/anisotropy.hpp"
 #include "rvelab/measure/deviator.hpp"
@@ -111,14 +113,28 @@ void add_probes(Listing& listing, const std::vector<records::ProbeResult>& probe
   listing.add("probes", std::move(rows));
 }
 
+/// Features of a monotonic test that it reaches.
+void add_features(Listing& listing, const io::RecordedTest& test, int dimension) {
+  ensemble::TestPath path = ensemble::path_of(test.result, dimension, true, keys::infinity);
+  const bool oedometer = path.loading.size() > 2;
+  if (!oedometer) path = ensemble::path_of(test.result, dimension, false, keys::infinity);
+  const auto protocol = protocol::parse_protocol(test.provenance.protocol, "the protocol in the file");
+  Json features = Json::object();
+  for (const ensemble::Feature& each : ensemble::usual_features(ensemble::test_kind(protocol, oedometer)))
+    if (const double value = ensemble::value_of(each, path); std::isfinite(value)) features[each.name] = value;
+  listing.add_to_json("features", features);
+}
+
 void add_test(Listing& listing, const io::RecordedTest& test, int dimension) {
   add_probes(listing, test.result.probes);
   if (test.result.records.empty()) return;
   const auto loops = ensemble::loops_of(calibrate::last_stage(test.result), test.result.axis, dimension);
-  if (loops.empty())
+  if (loops.empty()) {
     add_instability(listing, test, dimension);
-  else
+    add_features(listing, test, dimension);
+  } else {
     add_loops(listing, test, loops, dimension);
+  }
   std::vector<double> strains;
   for (const records::Record& record : test.result.records) strains.push_back(record.strain);
   listing.add_to_json("strains", strains);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/ensemble/cyclic.hpp"
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
@@ -128,7 +129,9 @@ const std::vector<Measure>& measures() {
       {"stress_ratio", "", "cyclic: amplitude of the stress over p at the start"},
       {"cycles_to_liquefaction", "", "cyclic: until p falls below its limit; not defined where it does not"},
       {"start_void_ratio", "", "at the first record of the last stage"},
-      {"end_void_ratio", "", "at the last record"}};
+      {"end_void_ratio", "", "at the last record"},
+      {"cycles_to_r_u_0.95", "", "cyclic at constant volume: until the pore pressure ratio r_u is 0.95"},
+      {"cycles_to_2.5_percent", "", "the same, stress-controlled: until a single amplitude of 2.5 % of strain"}};
   return all;
 }
 
@@ -203,6 +206,14 @@ std::vector<double> measured(const protocol::Protocol& protocol, const records::
   if (cyclic.cyclic) {
     found.emplace_back("stress_ratio", cyclic.stress_ratio);
     if (cyclic.liquefied) found.emplace_back("cycles_to_liquefaction", cyclic.cycles);
+  }
+  if (last.cyclic() && last.undrained()) {
+    const CyclesTo cycles =
+        last.shear != nullptr
+            ? cycles_to(last.records, test.axis, last.shear->cycles, last.shear->to_strain, dimension)
+            : cycles_to(last.records, test.axis, last.compression->cycles, last.compression->to_strain, dimension);
+    found.emplace_back("cycles_to_r_u_0.95", cycles.pore_pressure);
+    found.emplace_back("cycles_to_2.5_percent", cycles.strain);
   }
   if (!last.leads_to_strength()) return in_order(found);
   const calibrate::Peak peak = calibrate::peak(last.records, dimension);

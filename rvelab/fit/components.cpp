@@ -54,6 +54,14 @@ Components::Components(const std::vector<Target>& targets, const Eigen::MatrixXd
   for (std::size_t c = 0; c < directions.size(); ++c) directions_.col(Eigen::Index(c)) = directions[c];
   target_ = directions_.transpose() * (measured - shift_).cwiseQuotient(scale_);
   error_ = directions_.cwiseAbs().transpose() * errors.cwiseQuotient(scale_);
+  for (Eigen::Index c = 0; c < directions_.cols(); ++c) {
+    Eigen::Index largest = 0;
+    directions_.col(c).cwiseAbs().maxCoeff(&largest);
+    const std::optional<double> common = targets[std::size_t(largest)].common;
+    if (!common) continue;
+    const Eigen::VectorXd parts = directions_.col(c).cwiseProduct(errors.cwiseQuotient(scale_));
+    error_[c] = std::sqrt(*common * std::pow(parts.sum(), 2) + (1 - *common) * parts.squaredNorm());
+  }
 }
 
 Eigen::MatrixXd Components::of(const Eigen::MatrixXd& values) const {

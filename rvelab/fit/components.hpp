@@ -19,7 +19,8 @@ class Components {
   Eigen::MatrixXd of(const Eigen::MatrixXd& values) const;    ///< one column a component
   Eigen::MatrixXd back(const Eigen::MatrixXd& scores) const;  ///< one column a target, without what was left out
   const Eigen::VectorXd& target() const { return target_; }
-  /// Standard errors. Of a curve: as if the errors of all its points were the largest together.
+  /// Standard errors. Of a curve: as if the errors of all its points were the largest together, unless Target::common
+  /// says which part they share.
   const Eigen::VectorXd& error() const { return error_; }
 
  private:

@@ -62,8 +62,17 @@ std::vector<std::size_t> bending_rows(const std::vector<double>& x, const std::v
   return chosen;
 }
 
-double value_of(const records::Record& record, const std::string& quantity, int dimension) {
-  if (quantity == "strain") return std::abs(record.strain);
+/// Driving strain of a record; of a path, which counts another one, the axial strain.
+double strain_of(const records::Record& record, const std::string& axis) {
+  const double driving = std::abs(record.strain);
+  if (axis.size() != 1) return driving;
+  const int a = axis[0] - 'x';
+  const double axial = std::abs(1 - record.deformation_gradient(a, a));
+  return std::abs(driving - axial) > 1e-9 + 1e-6 * axial ? axial : driving;
+}
+
+double value_of(const records::Record& record, const std::string& quantity, const std::string& axis, int dimension) {
+  if (quantity == "strain") return strain_of(record, axis);
   if (quantity == "axial_stress") return calibrate::principal_stresses(record.stress, dimension).major;
   const double p = mean_pressure(record.stress, dimension);
   if (quantity == "p") return p;
@@ -176,6 +185,21 @@ std::vector<double> values_at(const MeasuredTable& table, const Readings& readin
   return values;
 }
 
+/// Adds the rows behind the loading, of a stress, as long as it falls and has a value.
+void add_unloading(Curve& curve, const MeasuredTable& table, const Readings& readings, const Loading& loading,
+                   const std::vector<Chosen>& columns, std::size_t k) {
+  if (readings.is_strain) return;
+  const auto first = table.number_or_nan(loading.points.front().rows.back(), columns[k].column);
+  double before = loading.points.back().x;
+  for (const std::size_t row : loading.after) {
+    const double x = readings.x[row], y = table.number_or_nan(row, columns[k].column);
+    if (!(x <= before) || !(x > 0) || !std::isfinite(y)) return;
+    before = x;
+    curve.unloaded_x.push_back(columns[0].kind.factor * x);
+    curve.unloaded_y.push_back(columns[k].kind.factor * (curve.name == "strain" ? y - first : y));
+  }
+}
+
 void expect_finite(const MeasuredTable& table, const Curve& curve, std::size_t column) {
   for (std::size_t k = 0; k < curve.x.size(); ++k)
     if (!std::isfinite(curve.x[k]) || (in_logarithm(curve.abscissa) && !std::isnormal(curve.x[k])) ||
@@ -229,6 +253,9 @@ std::vector<Curve> curves_in(MeasuredTable& table, const Selection& selection, c
       curve.error.push_back(error[row]);
     }
     expect_finite(table, curve, columns[k].column);
+    curve.all_x = x;
+    curve.all_y = y;
+    add_unloading(curve, table, readings, loading, columns, k);
     curves.push_back(std::move(curve));
   }
   tell_of(table, loading, columns[0].column, tell);
@@ -244,12 +271,12 @@ void begin_earlier(const records::TestResult& test, int dimension, const Curve& 
   double behind = 0;  // strain that is to come up to the last stage
   for (std::size_t k = all.size() - calibrate::last_stage(test).size(); k > 0; --k) {
     const records::Record& record = all[k - 1];
-    const double at = value_of(record, like.abscissa, dimension);
+    const double at = value_of(record, like.abscissa, test.axis, dimension);
     if (!(at <= x.front())) return;
     if (record.stage != all[k].stage) behind += std::abs(record.strain);
     if (at == x.front()) continue;  // a stage begins with the record that ended the one before
     x.insert(x.begin(), at);
-    y.insert(y.begin(), value_of(record, like.name, dimension) - (like.name == "strain" ? behind : 0));
+    y.insert(y.begin(), value_of(record, like.name, test.axis, dimension) - (like.name == "strain" ? behind : 0));
   }
 }
 
@@ -294,10 +321,10 @@ TestCurve curve_of(const records::TestResult& test, int dimension, const Curve& 
   std::vector<double> x, y;
   if (!test.records.empty()) {
     for (const records::Record& record : calibrate::last_stage(test)) {
-      const double at = value_of(record, like.abscissa, dimension);
+      const double at = value_of(record, like.abscissa, test.axis, dimension);
       if (!x.empty() && !(at > x.back())) continue;  // p wavers about its path
       x.push_back(at);
-      y.push_back(value_of(record, like.name, dimension));
+      y.push_back(value_of(record, like.name, test.axis, dimension));
     }
   }
   if (in_logarithm(like.abscissa)) begin_earlier(test, dimension, like, x, y);

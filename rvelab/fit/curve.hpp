@@ -30,11 +30,13 @@ struct Features {
 };
 
 struct Curve {
-  std::string name;                 ///< of the quantity: "deviator"
-  std::string abscissa;             ///< "strain", "p" or "axial_stress"
-  std::vector<double> x, y, error;  ///< SI; at most `most_points` rows of the measured range
-  Features features{};              ///< of all its rows
-  std::string file{};               ///< path, for messages
+  std::string name;                                ///< of the quantity: "deviator"
+  std::string abscissa;                            ///< "strain", "p" or "axial_stress"
+  std::vector<double> x, y, error;                 ///< SI; at most `most_points` rows of the measured range
+  Features features{};                             ///< of all its rows
+  std::string file{};                              ///< path, for messages
+  std::vector<double> all_x{}, all_y{};            ///< all rows
+  std::vector<double> unloaded_x{}, unloaded_y{};  ///< over a stress: the rows behind, as long as it falls
 };
 
 inline constexpr std::size_t most_points = 12;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 
+#include "rvelab/ensemble/features.hpp"
 #include "rvelab/ensemble/measures.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/keys/key.hpp"
@@ -87,7 +88,10 @@ ScalarTarget parsed_target(const std::string& text) {
   found.measure = name[0];
   std::vector<std::string> known;
   for (const auto& measure : ensemble::measures()) known.push_back(measure.name);
-  if (std::find(known.begin(), known.end(), found.measure) == known.end()) {
+  const bool is_measure = std::find(known.begin(), known.end(), found.measure) != known.end();
+  if (!is_measure && !ensemble::feature_of(found.measure)) {
+    for (const std::string& feature : ensemble::feature_names())
+      if (std::find(known.begin(), known.end(), feature) == known.end()) known.push_back(feature);
     std::string all;
     for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
     throw InputError("--target " + text + ": no test gives " + found.measure +

@@ -23,7 +23,7 @@ struct Parameter {
 /// "...:5:log". InputError naming the mistake.
 Parameter parsed_parameter(const std::string& text);
 
-/// A scalar target; `measure` is one of ensemble::measures().
+/// A scalar target; `measure` is one of ensemble::measures(), or a feature (ensemble/features.hpp).
 struct ScalarTarget {
   std::string measure;
   double value = 0, error = 0;

@@ -30,8 +30,9 @@ Learned learned_from(const Problem& problem, const Finding& so_far) {
   const std::size_t least = std::size_t(problem.parameters) + 4;
   if (good.size() < least)
     throw Error("fit: " + std::to_string(good.size()) + " of " + std::to_string(so_far.answers.size()) +
-                " tests gave every target; at least " + std::to_string(least) +
-                " are needed; narrow the ranges of --vary, or spend more tests");
+                " tests gave every target; at least " + std::to_string(least) + " are needed" +
+                most_often_missing(problem.targets, so_far.answers) +
+                "; narrow the ranges of --vary, or spend more tests");
   Learned learned{Eigen::MatrixXd(Eigen::Index(good.size()), problem.parameters),
                   Eigen::MatrixXd(Eigen::Index(good.size()), Eigen::Index(problem.targets.size())),
                   {}};
@@ -124,7 +125,20 @@ void run_batch(const Problem& problem, const RunCandidates& run, const Eigen::Ma
 
 }  // namespace
 
+std::string most_often_missing(const std::vector<Target>& targets, const std::vector<Answer>& answers) {
+  std::pair<std::size_t, std::size_t> most{0, 0};
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    std::size_t missing = 0;
+    for (const Answer& answer : answers)
+      if (answer.size() == targets.size() && !std::isfinite(answer[k])) ++missing;
+    if (missing > most.first) most = {missing, k};
+  }
+  if (most.first == 0) return "";
+  return "; " + targets[most.second].name + " is missing in " + std::to_string(most.first);
+}
+
 std::size_t usual_tests(Eigen::Index parameters) { return std::size_t(24 + 16 * parameters); }
+std::size_t usual_tests_of_features(Eigen::Index parameters) { return std::size_t(24 + 8 * parameters); }
 
 Finding search(const Problem& problem, const RunCandidates& run) {
   Finding found;

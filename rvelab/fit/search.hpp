@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Target {
   double value = 0;
   double error = 0;  ///< standard error of the value; 0: exact
   int curve = -1;    ///< targets of one number >= 0 are points of one curve, whose errors go together
+  /// Of such a group: part of the variance of their errors that all share, the rest is independent; none: all errors
+  /// may be the largest together, in whatever direction.
+  std::optional<double> common{};
 };
 
 struct Problem {
@@ -55,7 +59,13 @@ struct Finding {
 /// same bits. Error if so many tests fail that too few are left.
 Finding search(const Problem& problem, const RunCandidates& run);
 
+/// "; NAME is missing in 7": the target that tests which were carried out lack most often; "" if none does.
+std::string most_often_missing(const std::vector<Target>& targets, const std::vector<Answer>& answers);
+
 /// Tests that are spent without another number: 24 and 16 for each parameter.
 std::size_t usual_tests(Eigen::Index parameters);
+/// Where features alone are fitted: 24 and 8 for each. Of ten sands of five parameters 9, 10, 10 lay in their intervals
+/// with 48, 64, 104 tests, whose mean width was 0.67 of the range with each (tests/fit/test_features.cpp).
+std::size_t usual_tests_of_features(Eigen::Index parameters);
 
 }  // namespace rvelab::fit

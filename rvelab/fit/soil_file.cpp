@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "rvelab/ensemble/features.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"
 
@@ -28,11 +29,25 @@ auto parsed_texts(TableReader& reader, const char* name, const char* meaning, Pa
 void read_fit(TableReader& reader, SoilFile& file) {
   file.recipe = reader.required_text("recipe", "recipe of the specimens: a path, or the name of an installed one");
   reader.whole_number("count", file.count, {1, 1e6}, "specimens of each test, one a seed");
-  file.tests = reader.optional_whole_number("tests", {8, 100'000}, "sets of parameters to try",
-                                            "24 and 16 for each parameter", "8 to 100000");
+  file.tests =
+      reader.optional_whole_number("tests", {8, 100'000}, "sets of parameters to try",
+                                   "24 and 16 for each parameter, 8 where only features are fitted", "8 to 100000");
   file.settings = reader.texts("settings", "KEY=value of every test and of the recipe");
   file.parameters = parsed_texts(reader, "vary", "KEY=low:high, with :log behind it for even steps in the logarithm",
                                  [](const std::string& text) { return parsed_parameter(text); });
+  reader.choice(
+      "compare", file.compare, {"curves", "features"},
+      "what of a measured curve is fitted: curves: its points; features: what the soil is (q at small strains, "
+      "E50, largest q ...), by the scatter of laboratories");
+  const keys::Range void_ratios{{0, 10, true, false}};
+  const auto e_min =
+      reader.optional_number("e_min", "1", void_ratios,
+                             "densest void ratio of the sand itself; with e_max: void_ratio of a "
+                             "[[measured]] is that of the sand, and the specimen gets its relative density");
+  const auto e_max = reader.optional_number("e_max", "1", void_ratios, "loosest void ratio of the sand itself");
+  if (e_min && e_max && *e_min < *e_max) file.sand = {*e_min, *e_max};
+  if (e_min.has_value() != e_max.has_value() || (e_min && !file.sand))
+    reader.mistake(e_min ? "e_min" : "e_max", "needs e_min below e_max; allowed: both, or none; give both");
   for (const Parameter& parameter : file.parameters)
     if (parameter.grid != 0)
       reader.mistake("vary", "asks for a sweep of " + parameter.key + "; allowed: KEY=low:high; leave the number out");
@@ -41,7 +56,11 @@ void read_fit(TableReader& reader, SoilFile& file) {
 MeasuredTest read_measured(TableReader& reader) {
   MeasuredTest test;
   test.name = reader.required_text("name", "of the test, for results");
-  test.protocol = reader.required_text("protocol", "test to make: a path, or the name of an installed one");
+  reader.text("repeats", test.repeats,
+              "name of the test above that this one repeats in the laboratory: its features count with those of that "
+              "one, and give the scatter",
+              "none");
+  reader.text("protocol", test.protocol, "test to make: a path, or the name of an installed one", "required");
   reader.text("curve", test.curve, "measured curve, CSV; relative to the folder of the file", "none");
   test.selection.columns = reader.texts("columns",
                                         "columns of it to read, the abscissa first: \"deviator_kPa\", or "
@@ -65,10 +84,33 @@ MeasuredTest read_measured(TableReader& reader) {
     reader.mistake("void_ratio", "contradicts relative_density; allowed: one of the two; remove one");
   test.settings = reader.texts("settings", "KEY=value of this test alone");
   reader.boolean("predict", test.predict, "leave it out of the fit, and compare it with what the fit predicts");
+  test.features =
+      reader.texts("features",
+                   "features to compare of the curve, instead of the usual ones of the kind of test; names: "
+                   "the page Fitting of the manual");
+  test.compare = reader.choice("compare", "", {"curves", "features"}, "of this test alone, as fit.compare",
+                               "fit.compare; features where some are named");
+  if (test.compare == "curves" && !test.features.empty())
+    reader.mistake("features", "is given with compare = \"curves\"; allowed: one of the two; remove one");
+  for (const std::string& name : test.features)
+    if (!ensemble::feature_of(name))
+      reader.mistake("features", "names " + name + ", which is no feature" +
+                                     keys::nearest_in_words(name, ensemble::feature_names()) + "; allowed: " +
+                                     keys::listed(ensemble::feature_names()) + ", X a number; correct it");
+  if (!test.repeats.empty()) {
+    for (const char* name : {"protocol", "targets", "pressure_Pa", "relative_density", "void_ratio", "settings",
+                             "predict", "features", "compare"})
+      reader.refuse(name, "is that of the test that is repeated; remove it");
+    if (test.curve.empty()) reader.mistake("curve", "is missing; allowed: the curve of a repeated test; give it");
+    return test;
+  }
+  if (test.protocol.empty())
+    reader.mistake("protocol", "is missing; allowed: a path, or the name of an installed test; give it");
   if (test.curve.empty() && test.targets.empty())
     reader.mistake("has neither curve nor targets; allowed: a measured curve (CSV), or measures; give one");
   if (test.curve.empty())
-    for (const char* name : {"columns", "from", "to"}) reader.refuse(name, "is given without a curve; remove it");
+    for (const char* name : {"columns", "from", "to", "features", "compare"})
+      reader.refuse(name, "is given without a curve; remove it");
   return test;
 }
 
@@ -93,18 +135,39 @@ std::vector<MeasuredTest> read_list(const toml::table& file, std::vector<keys::K
   return tests;
 }
 
+/// A repetition stands behind a test whose features are compared.
+void expect_repeated(TableReader& reader, const SoilFile& file) {
+  for (auto test = file.measured.begin(); test != file.measured.end(); ++test) {
+    if (test->repeats.empty()) continue;
+    const auto original = std::find_if(file.measured.begin(), test, [&](const MeasuredTest& other) {
+      return other.name == test->repeats && other.repeats.empty() && !other.curve.empty();
+    });
+    if (original == test)
+      reader.mistake("measured." + test->name + ".repeats = " + test->repeats +
+                     " names no test with a curve above it; allowed: the name of one; correct it");
+    else if (!file.compares_features(*original))
+      reader.mistake("measured." + test->name + ".repeats: the points of " + original->name +
+                     " are fitted; allowed: with features, which give a scatter; set fit.compare = \"features\"");
+  }
+}
+
 }  // namespace
 
-std::vector<std::string> MeasuredTest::assignments() const {
+std::vector<std::string> SoilFile::assignments(const MeasuredTest& test) const {
   std::vector<std::string> all;
+  std::optional<double> relative_density = test.relative_density, void_ratio = test.void_ratio;
+  if (sand && void_ratio) {
+    relative_density = (sand->e_max - *void_ratio) / (sand->e_max - sand->e_min);
+    void_ratio.reset();
+  }
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) all.push_back(std::string(key) + "=" + keys::as_toml(*value));
   };
-  add("target.pressure_Pa", pressure);
-  add("test.pressure_Pa", pressure);
+  add("target.pressure_Pa", test.pressure);
+  add("test.pressure_Pa", test.pressure);
   add("target.relative_density", relative_density);
   add("target.void_ratio", void_ratio);
-  all.insert(all.end(), settings.begin(), settings.end());
+  all.insert(all.end(), test.settings.begin(), test.settings.end());
   return all;
 }
 
@@ -119,8 +182,9 @@ SoilFile read_soil_file(const toml::table& file, const std::string& path) {
   read_fit(reader, found);
   reader.finish();
   found.measured = read_list(file, errors);
-  if (errors.empty() &&
-      std::all_of(found.measured.begin(), found.measured.end(), [](const MeasuredTest& test) { return test.predict; }))
+  expect_repeated(reader, found);
+  if (errors.empty() && std::all_of(found.measured.begin(), found.measured.end(),
+                                    [](const MeasuredTest& test) { return test.predict || !test.repeats.empty(); }))
     reader.mistake("has only tests to predict; allowed: at least one to fit; leave predict out of one");
   keys::raise(path, errors);
   return found;

@@ -24,18 +24,33 @@ struct MeasuredTest {
   std::optional<double> void_ratio;        ///< of the specimen
   std::vector<std::string> settings;       ///< KEY=value of this test alone
   bool predict = false;                    ///< not fitted: compared with what the fit predicts
+  std::string compare;                     ///< "curves", "features"; "": as the file says
+  std::vector<std::string> features;       ///< names; empty: the usual ones, where features are compared
+  std::string repeats;                     ///< name of the test that this one repeats in the laboratory; "": none
+};
 
-  /// The settings, with those that pressure and density stand for.
-  std::vector<std::string> assignments() const;
+/// Densest and loosest void ratio of the sand itself.
+struct SandLimits {
+  double e_min = 0, e_max = 0;
 };
 
 struct SoilFile {
   std::string recipe;  ///< path relative to the file, or the name of an installed one
   long count = 5;      ///< specimens
   std::optional<long> tests;
+  enum class Compare { curves, features } compare = Compare::curves;
+  /// With them void ratios of tests are those of the sand, whose relative density the specimen gets.
+  std::optional<SandLimits> sand;
   std::vector<std::string> settings;  ///< KEY=value of all tests
   std::vector<Parameter> parameters;
   std::vector<MeasuredTest> measured;
+
+  bool compares_features(const MeasuredTest& test) const {
+    if (!test.compare.empty()) return test.compare == "features";
+    return compare == Compare::features || !test.features.empty();
+  }
+  /// Settings of a test, with those that pressure and density stand for.
+  std::vector<std::string> assignments(const MeasuredTest& test) const;
 };
 
 bool is_soil_file(const toml::table& file);

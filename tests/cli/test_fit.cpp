@@ -180,6 +180,94 @@ TEST_CASE("One set of parameters is fitted to some tests of a soil, and predicts
   here.refuses("fit soil.toml --target E50_Pa=3e7", "targets of a [[measured]]");
 }
 
+namespace {
+
+/// Forty spheres; the curve of the test is truth.csv.
+std::string soil_by_features(const std::string& vary, const std::string& more) {
+  return "[fit]\nrecipe = \"karlsruhe\"\ncount = 2\ne_min = 0.677\ne_max = 1.054\ncompare = \"features\"\n"
+         "settings = [\"pack.number=40\", \"target.void_ratio_tolerance=0.03\", "
+         "\"stage.compression.to_strain=0.012\"]\n"
+         "vary = [" +
+         vary +
+         "]\n[[measured]]\nname = \"T\"\nprotocol = \"triaxial\"\npressure_Pa = 100e3\nvoid_ratio = 0.75\n"
+         "curve = \"truth.csv\"\ncolumns = [\"axial_strain=x\", \"deviator_Pa=q\"]\n" +
+         more;
+}
+
+}  // namespace
+
+TEST_CASE("Features of tests with known grains are found again, with a map of densities") {
+  const Workplace here;
+  here.write("truth.csv", "x,q\n0,0\n0.001,40e3\n0.005,100e3\n0.012,120e3\n");
+  // What E = 2 GPa gives, as a measured curve.
+  here.write("soil.toml", soil_by_features("\"material.young_modulus_Pa=1.999e9:2.001e9\"", ""));
+  const Outcome first = here.run("fit soil.toml --tests 8 -o F");
+  INFO(first.errors);
+  REQUIRE(first.code == 0);
+  CHECK_THAT(first.errors, Contains("T has no q_at_2_percent_Pa, q_at_5_percent_Pa, eps_v_at_2_percent"));
+  std::istringstream predicted(bytes_of(here / "F/predictions.csv"));
+  std::string line, truth = "x,q\n";
+  std::getline(predicted, line);
+  CHECK(line.starts_with("test,predicted,quantity,abscissa,x,measured,error,mean,"));
+  while (std::getline(predicted, line)) {
+    std::istringstream row(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    truth += cells.at(4) + "," + cells.at(7) + "\n";
+  }
+  here.write("truth.csv", truth);
+  here.write("soil.toml",
+             soil_by_features("\"material.young_modulus_Pa=0.5e9:8e9:log\", \"target.e_min=0.52:0.54\", "
+                              "\"target.e_max=0.74:0.8\"",
+                              "[[measured]]\nname = \"U\"\nprotocol = \"triaxial_undrained\"\npressure_Pa = 100e3\n"
+                              "void_ratio = 0.8\npredict = true\ntargets = [\"q_at_1_percent_Pa=150e3+-20e3\"]\n"));
+  here.succeeds("fit soil.toml --tests 30 -o G");
+  const auto found = nlohmann::json::parse(bytes_of(here / "G/fit.json"));
+  CHECK(found["parameters"][0]["low_95"].get<double>() <= 2e9);
+  CHECK(found["parameters"][0]["high_95"].get<double>() >= 2e9);
+  CHECK(found["parameters"][0]["high_95"].get<double>() < 7e9);
+  // e_model = a + b e_sand passes the limits of both.
+  const auto map = found["density_map"];
+  const double a = map["intercept"]["mean"], b = map["slope"]["mean"];
+  CHECK(a + 0.677 * b == Approx(found["parameters"][1]["mean"].get<double>()));
+  CHECK(a + 1.054 * b == Approx(found["parameters"][2]["mean"].get<double>()));
+  REQUIRE(found["features"].size() == 8);  // of T q at 0.1, 0.5, 1 %, E50, largest, last, strain at 95 %; and one of U
+  for (const auto& each : found["features"])
+    if (each["predicted"] == false) CHECK(std::abs(each["off_standard_errors"].get<double>()) < 3);
+  const std::string csv = bytes_of(here / "G/features.csv");
+  CHECK_THAT(csv, Contains("\nT,0,largest_q_Pa,") && Contains("\nU,1,q_at_1_percent_Pa,150000,20000,1,"));
+  CHECK(!std::filesystem::exists(here / "G/curves.csv"));
+  // A killed one goes on with the same bits.
+  std::filesystem::remove(here / "G/tests/0007.json");
+  std::filesystem::remove(here / "G/fit.json");
+  here.succeeds("fit soil.toml --tests 30 -o G --resume --threads 2");
+  CHECK(nlohmann::json::parse(bytes_of(here / "G/fit.json")) == found);
+  here.refuses("fit soil.toml --set stage.compression.to_strain=0.0119", "beyond the end of the test");
+  here.refuses("fit soil.toml --vary measured.X.target.void_ratio=0.5:0.6", "no such test to make");
+  // What it takes is told after the first sets, long before the end.
+  here.shell(std::string("'") + RVELAB_PROGRAM +
+             "' fit soil.toml --tests 90000 --threads 1 >cost.out 2>cost.err & fit=$!\n"
+             "for k in $(seq 600); do grep -q ' about ' cost.err && break; sleep 0.1; done; kill $fit; wait $fit");
+  CHECK_THAT(
+      bytes_of(here / "cost.err"),
+      Contains("90000 sets of parameters x 1 test, each on one of 2 specimens, then 4 predictions x 2 tests: about ") &&
+          Contains(" on 1 thread, since a set took ") && Contains("for packing"));
+}
+
+TEST_CASE("A key of one test is varied for it alone") {
+  const Workplace here;
+  here.write("truth.csv", "x,q\n0,0\n0.001,40e3\n0.005,100e3\n0.012,120e3\n");
+  // Of two tests alike one gets its own friction, and differs; the other stays as it is.
+  const std::string other =
+      "[[measured]]\nname = \"V\"\nprotocol = \"triaxial\"\npressure_Pa = 100e3\nvoid_ratio = 0.75\n"
+      "curve = \"truth.csv\"\ncolumns = [\"axial_strain=x\", \"deviator_Pa=q\"]\n";
+  here.write("soil.toml", soil_by_features("\"measured.V.material.friction=0.05:0.06\"", other));
+  here.succeeds("fit soil.toml --tests 8 -o F");
+  const auto test = nlohmann::json::parse(bytes_of(here / "F/tests/0001.json"));
+  const auto last = [&](int made) { return test["compared"][made][3].get<double>(); };
+  CHECK(last(1) < 0.8 * last(0));
+}
+
 TEST_CASE("Mistakes of a fit are told before any test") {
   Workplace place;
   const Workplace& here = with_two_packings(place);
@@ -197,6 +285,10 @@ TEST_CASE("Mistakes of a fit are told before any test") {
       "friction_angle_deg=30",
       "--same-specimens is given with --recipe");
   here.refuses(fit + "--same-specimens --vary material.friction=0.1:1:5", "without a target");
+  here.refuses(fit +
+                   "--target q_at_5_percent_Pa=1e5 --set stage.compression.to_strain=0.03 --vary "
+                   "material.friction=0.1:1",
+               "q_at_5_percent_Pa lies beyond", "to_strain");
   here.refuses(fit + "--target angle=30 --vary material.friction=0.1:1", "the nearest is");
   here.refuses(fit + "--predict A --vary material.friction=0.1:1", "with a protocol");
   here.refuses(fit + "--column q_over_p --target friction_angle_deg=30 --vary material.friction=0.1:1",

@@ -274,7 +274,16 @@ TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") 
   // The same fit without and with predictions of other tests.
   for (const char* file : {"fit.json", "curves.csv"})
     std::filesystem::copy_file(here / ("fit/" + std::string(file)), here / ("predicted/" + std::string(file)));
-  expect(here, {{"fit", "fit", draws, "material.friction 0.50 (0.40 to 0.60); 1 tests"},
+  std::filesystem::create_directory(here / "features");
+  std::string with_features = bytes_of(here / "fit/fit.json");
+  with_features.insert(with_features.size() - 1,
+                       R"(, "features": [{"test": "A", "predicted": false, "feature": "largest_q_Pa", "measured": 4e5,
+      "standard_error": 2e4, "mean": 4.1e5, "standard_deviation": 1e4, "n": 8}, {"test": "A", "predicted": false,
+      "feature": "eps_v_at_5_percent", "measured": -0.02, "standard_error": 0.002, "mean": null, "standard_deviation": null,
+      "n": 0}])");
+  here.write("features/fit.json", with_features);
+  expect(here, {{"fit", "features", draws, "material.friction 0.50 (0.40 to 0.60); 1 tests"},
+                {"fit", "fit", draws, "material.friction 0.50 (0.40 to 0.60); 1 tests"},
                 {"fit", "sweep", draws, "1 measure against material.friction, 2 points"},
                 {"fit", "predicted", draws, "material.friction 0.50 (0.40 to 0.60); 1 tests"},
                 {"fit", "missing", refuses, "fit.json: is not there"},

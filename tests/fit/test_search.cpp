@@ -182,3 +182,10 @@ TEST_CASE("Targets out of reach are told by the misfit, and tests that fail are 
       fit::search(failing.problem, [](const auto& candidates) { return std::vector<fit::Answer>(candidates.size()); }),
       Error);
 }
+
+TEST_CASE("The target that tests lack most often is named") {
+  const double nan = std::nan("");
+  const std::vector<fit::Target> targets{{"a", 1, 1}, {"b", 1, 1}};
+  CHECK(fit::most_often_missing(targets, {{1, nan}, {nan, nan}, {1, 2}, {}}) == "; b is missing in 2");
+  CHECK(fit::most_often_missing(targets, {{1, 2}, {}}).empty());
+}

@@ -30,7 +30,7 @@ TEST_CASE("A soil file names recipe, ranges and tests, each with its specimen") 
   REQUIRE(file.measured.size() == 2);
   CHECK(file.measured[0].selection.columns[1] == "deviator_kPa=q");
   CHECK(file.measured[0].selection.to == 15.0);
-  CHECK(file.measured[0].assignments() ==
+  CHECK(file.assignments(file.measured[0]) ==
         std::vector<std::string>{"target.pressure_Pa=100000", "test.pressure_Pa=100000", "target.relative_density=0.25",
                                  "stage.compression.to_strain=0.1"});
   CHECK(file.measured[1].predict);
@@ -55,4 +55,38 @@ TEST_CASE("Mistakes of a soil file are named with their lines") {
   CHECK_THAT(refused("[fit]\nrecipe = \"sand\"\nvary = [\"material.friction\"]\n" + one_test),
              Contains("is no key with a range"));
   CHECK_THAT(refused(fit_table + one_test + "targets = [\"friction_angle_deg@1e5=33\"]\n"), Contains("pressure_Pa"));
+}
+
+TEST_CASE("A soil file compares features where it says so, and repeats a test of the laboratory") {
+  const std::string repeated = "[[measured]]\nname = \"B\"\nrepeats = \"A\"\ncurve = \"b.csv\"\n";
+  const fit::SoilFile file = read(fit_table + "compare = \"features\"\n" + one_test + repeated);
+  CHECK(file.compares_features(file.measured[0]));
+  CHECK(file.measured[1].repeats == "A");
+  const fit::SoilFile old = read(fit_table + one_test);
+  CHECK(!old.compares_features(old.measured[0]));
+  CHECK(read(fit_table + one_test + "features = [\"largest_q_Pa\"]\n").measured[0].features.size() == 1);
+  const fit::SoilFile mixed = read(fit_table + "compare = \"features\"\n" + one_test + "compare = \"curves\"\n");
+  CHECK(!mixed.compares_features(mixed.measured[0]));
+  const auto refused = [](const std::string& text) { return input_error([&] { read(text); }); };
+  CHECK_THAT(refused(fit_table + one_test + "compare = \"curves\"\nfeatures = [\"largest_q_Pa\"]\n"),
+             Contains("one of the two"));
+  CHECK_THAT(refused(fit_table + one_test + "features = [\"larges_q_Pa\"]\n"),
+             Contains("nearest") && Contains("largest_q_Pa"));
+  CHECK_THAT(refused(fit_table + one_test + repeated), Contains("points of A") && Contains("fit.compare"));
+  CHECK_THAT(refused(fit_table + "compare = \"features\"\n" + repeated + one_test), Contains("no test with a curve"));
+  CHECK_THAT(refused(fit_table + "compare = \"features\"\n" + one_test + repeated + "pressure_Pa = 1e5\n"),
+             Contains("that is repeated"));
+  CHECK_THAT(refused(fit_table + "compare = \"feature\"\n" + one_test), Contains("fit.compare"));
+  CHECK_THAT(refused(fit_table + "[[measured]]\nname = \"A\"\ncurve = \"a.csv\"\n"), Contains("protocol"));
+}
+
+TEST_CASE("A void ratio of the sand becomes a relative density, which the limits of the recipe map") {
+  const std::string sand = "e_min = 0.6\ne_max = 1.0\n";
+  const fit::SoilFile file = read(fit_table + sand + one_test + "void_ratio = 0.7\n");
+  CHECK(file.assignments(file.measured[0]) == std::vector<std::string>{"target.relative_density=0.75"});
+  const fit::SoilFile own = read(fit_table + one_test + "void_ratio = 0.7\n");
+  CHECK(own.assignments(own.measured[0]) == std::vector<std::string>{"target.void_ratio=0.7"});
+  const auto refused = [](const std::string& text) { return input_error([&] { read(text); }); };
+  CHECK_THAT(refused(fit_table + "e_min = 0.6\n" + one_test), Contains("e_max"));
+  CHECK_THAT(refused(fit_table + "e_min = 1.1\ne_max = 1.0\n" + one_test), Contains("e_min below e_max"));
 }

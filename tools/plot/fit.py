@@ -2,8 +2,8 @@
 """Results of `rvelab fit`: fit.py FOLDER -o fit.png (the folder that it wrote; fit.json, or of a sweep sweep.csv).
 
 Of a fit: the posterior of each parameter with its mean and 95 % interval over the searched range, the tests
-as strokes below it; then each target as measured and as fitted, in standard deviations of both; of measured
-curves the points with their errors and the fit with its band of 95 %. Of a sweep: each measure against the first varied
+as strokes below it; then each target as measured and as fitted, in standard deviations of both; features of each test
+likewise; of measured curves the points with their errors and the fit with its band of 95 %. Of a sweep: each measure against the first varied
 key, mean and standard error over the specimens, one curve for each combination of the others.
 """
 
@@ -96,6 +96,25 @@ def draw_targets(axes, targets):
     axes.set_xlabel("fit less measured, in standard deviations", fontsize=9)
 
 
+def draw_features(axes, rows):
+    """Features of one test: difference of the model and the measurement over the error of both, with the scatter of the model."""
+    role = "predicted" if rows[0]["predicted"] else "fitted"
+    for row, feature in enumerate(rows):
+        if feature["mean"] is None:
+            continue
+        deviation = feature["standard_deviation"] or 0
+        scale = math.hypot(feature["standard_error"], deviation) or 1
+        axes.errorbar((feature["mean"] - feature["measured"]) / scale, row, xerr=deviation / scale, fmt="o", markersize=4,
+                      color="tab:orange" if role == "predicted" else "tab:blue", capsize=2)
+    axes.axvline(0, color="crimson", linewidth=1)
+    axes.set_xlim(*(lambda reach: (-reach, reach))(max(3, *np.abs(axes.get_xlim()))))
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    labels = [row["feature"].removesuffix("_Pa").replace("_percent", " %").replace("_", " ") for row in rows]
+    axes.set_yticks(range(len(rows)), labels, fontsize=6)
+    axes.set_title(f"{rows[0]['test']}, {role}", fontsize=9)
+    axes.set_xlabel("model less measured, in standard deviations", fontsize=9)
+
+
 def draw_curve(axes, rows):
     """Points of one measured curve, and the band of the fit, or of the tests made with the fitted parameters."""
     rows = sorted(rows, key=lambda row: float(row["x"]))
@@ -138,13 +157,20 @@ def panels(count):
 
 def draw_fit(found, rows, options):
     measured = groups_of(rows)
-    scalars = [target for target in found["targets"] if not target.get("of_curve", " at " in target["name"])]
-    count = len(found["parameters"]) + bool(scalars) + len(measured)
+    features = {}
+    for feature in found.get("features", []):
+        features.setdefault(feature["test"], []).append(feature)
+    drawn = {f"{test}: {feature['feature']}" for test, own in features.items() for feature in own}
+    scalars = [target for target in found["targets"]
+               if not target.get("of_curve", " at " in target["name"]) and target["name"] not in drawn]
+    count = len(found["parameters"]) + bool(scalars) + len(features) + len(measured)
     figure, axes = panels(count)
     for parameter in found["parameters"]:
         draw_posterior(axes.pop(0), parameter, found["posterior_sample"][parameter["key"]], found["tests"])
     if scalars:
         draw_targets(axes.pop(0), scalars)
+    for own in features.values():
+        draw_features(axes.pop(0), own)
     for group in measured:
         draw_curve(axes.pop(0), [rows[k] for k in group])
     figure.savefig(options.output)

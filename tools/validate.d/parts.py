@@ -76,6 +76,7 @@ PARTS = [
     Part("ellipses", 90, "bedded ellipses: axes of stiffness, strength, shear, fabric"),
     Part("force_fabric", 2, "stress of force and fabric where grains are flat and lie in beds"),
     Part("shapes", 15, "friction angles against elongation and blockiness of grains in space"),
+    Part("fit_features", 15, "a published sand fitted by features with five parameters, and a map of densities"),
     Part("karlsruhe", 40, "a published sand fitted on three tests and predicted in three"),
     Part("study", 5, "errors and their estimates over the tolerances", "check studies $work/study tolerance"),
     Part("studies", 60, "studies of scale: space, number of grains, stiffness over pressure; and of damping"),
