@@ -16,8 +16,8 @@ double contacts_by_expansion(int dimension) { return dimension == 2 ? -0.2 : -0.
 double anisotropy_by_difference(int dimension) { return dimension == 2 ? 0.1 : 0.4; }
 /// Compressions for one target, and for both: of 500 grains one in two or three has each within its tolerance.
 constexpr std::size_t most_compressions = 8, most_compressions_of_both = 16;
-/// Change of the void ratio with what is missing of the coordination number, and its scatter: a draw whose void ratio
-/// will miss the target by more is given up, whatever its contacts.
+/// The void ratio rises by this where a contact a grain is lost by a wider expansion. A draw that will miss the void
+/// ratio of the target by more than half of that, and its scatter, is given up, whatever its contacts.
 constexpr double void_ratio_by_contacts = 0.015, scatter_of_void_ratio = 1e-3;
 
 std::string range_of(const std::vector<Compressed>& made, double Compressed::*value) {
@@ -34,6 +34,11 @@ bool Compressed::meets(const ContactTarget& target) const {
   };
   return within(coordination_number, target.coordination_number, target.coordination_tolerance) &&
          within(fabric_anisotropy, target.fabric_anisotropy, target.fabric_tolerance);
+}
+
+double Compressed::void_ratio_at(const ContactTarget& target) const {
+  return void_ratio +
+         void_ratio_by_contacts * (coordination_number - target.coordination_number.value_or(coordination_number));
 }
 
 Compressed compressed_state(const Recipe& recipe, const Agitation& by, const Network& network) {
@@ -66,19 +71,19 @@ void ContactSearch::add(const Compressed& made) {
 bool ContactSearch::met() const { return !made_.empty() && made_.back().meets(recipe_.contacts); }
 
 bool ContactSearch::density_is_missed() const {
-  if (!recipe_.void_ratio) return false;
+  if (made_.empty() || !recipe_.void_ratio) return false;
   const Compressed& last = made_.back();
   const double wanted = recipe_.contacts.coordination_number.value_or(last.coordination_number);
-  return std::abs(last.void_ratio - *recipe_.void_ratio) >
+  return std::abs(last.void_ratio_at(recipe_.contacts) - *recipe_.void_ratio) >
          recipe_.void_ratio_tolerance + scatter_of_void_ratio +
-             void_ratio_by_contacts * std::abs(last.coordination_number - wanted);
+             0.5 * void_ratio_by_contacts * std::abs(last.coordination_number - wanted);
 }
 
-bool ContactSearch::given_up() const {
-  if (made_.empty()) return false;
+bool ContactSearch::in_vain() const {
+  if (made_.empty() || met()) return false;
   const bool both = recipe_.contacts.coordination_number && recipe_.contacts.fabric_anisotropy;
-  return density_is_missed() || made_.size() >= (both ? most_compressions_of_both : most_compressions) ||
-         expansion_.out_of_range() || difference_.out_of_range();
+  return made_.size() >= (both ? most_compressions_of_both : most_compressions) || expansion_.out_of_range() ||
+         difference_.out_of_range();
 }
 
 std::string reached_in_words(const std::vector<Compressed>& made) {

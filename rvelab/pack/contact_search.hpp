@@ -15,6 +15,8 @@ struct Compressed {
   Agitation by;
   double void_ratio = 0, coordination_number = 0, fabric_anisotropy = 0;
   bool meets(const ContactTarget& target) const;
+  /// With the coordination number of the target instead of its own, about.
+  double void_ratio_at(const ContactTarget& target) const;
 };
 
 Compressed compressed_state(const Recipe& recipe, const Agitation& by, const Network& network);
@@ -26,7 +28,9 @@ class ContactSearch {
   void add(const Compressed& made);
   /// Whether the last one is accepted; whether no further one is worth its time.
   bool met() const;
-  bool given_up() const;
+  bool given_up() const { return in_vain() || density_is_missed(); }
+  /// Whether the target is out of reach, or was not met in as many compressions as are made for one.
+  bool in_vain() const;
   const std::vector<Compressed>& made() const { return made_; }
 
  private:

@@ -97,7 +97,7 @@ PressStrains press_strains(const Recipe& recipe, double difference) {
 /// their contacts are as wanted or the search for that ends.
 Rve agitated_and_compressed(const Recipe& recipe, const Rve& prepared, const StressGoal& goal, const Agitation& first,
                             Uniform& uniform, const DrawWatch& watch, Matrix3& deformation, StepsLeft& left,
-                            std::vector<Compressed>& made) {
+                            Draw& result) {
   const Matrix3 deformation_before = deformation;
   ContactSearch search(recipe, first);
   while (true) {
@@ -110,7 +110,8 @@ Rve agitated_and_compressed(const Recipe& recipe, const Rve& prepared, const Str
     consolidate(rve, goal, nearly, deformation, &left);
     search.add(compressed_state(recipe, by, rve.network()));
     if (!search.met() && !search.given_up()) continue;
-    made = search.made();
+    result.compressed = search.made();
+    result.contacts_in_vain = search.in_vain();
     return rve;
   }
 }
@@ -135,7 +136,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& w
     expect_overlaps(recipe, rve, 1.5);  // this far beyond, no later step helps
     goal.stress = *recipe.stress;
     if (is_agitated(recipe)) {
-      rve = agitated_and_compressed(recipe, rve, goal, agitation, uniform, watch, deformation, left, result.compressed);
+      rve = agitated_and_compressed(recipe, rve, goal, agitation, uniform, watch, deformation, left, result);
     } else {
       rve.set_materials(recipe.materials);
       consolidate(rve, goal, nearly, deformation, &left);
@@ -144,6 +145,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const DrawWatch& w
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
     const bool contacts = result.compressed.empty() || result.compressed.back().meets(recipe.contacts);
+    if (!contacts) result.void_ratio = result.compressed.back().void_ratio_at(recipe.contacts);
     if (miss > recipe.void_ratio_tolerance + still_to_come || !contacts) return result;
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;

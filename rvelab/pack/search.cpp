@@ -130,9 +130,9 @@ class Search {
       const Compressed& last = draw.compressed.back();
       if (std::abs(last.void_ratio - *recipe_.void_ratio) > near_density(recipe_)) continue;
       if (last.meets(recipe_.contacts)) return false;
-      ++in_vain;
+      if (draw.contacts_in_vain) ++in_vain;
     }
-    return in_vain >= 4;
+    return in_vain >= 3;
   }
 
   /// The agitation by which the known draw of the nearest friction had its contacts.
