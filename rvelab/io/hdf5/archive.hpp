@@ -80,6 +80,7 @@ class Writer {
  private:
   template <class Item, class Member>
   void column(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column) {
+    if (fields::is_left_out(column, items)) return;
     rows<Member>(
         group + "/" + column.name, items.size(),
         [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units);
@@ -148,6 +149,7 @@ class Reader {
   template <class Item, class Member>
   void column(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column) {
     const std::string name = group + "/" + column.name;
+    if (column.left_out_at_zero && !file_.has(group_ + "/" + name)) return;
     expect_shape<Member>(name, {items.size()});
     rows<Member>(name, items.size(), [&](std::size_t k) -> Member& { return items[k].*column.member; });
   }
@@ -219,7 +221,13 @@ class Digest {
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
     if (fields::left_out_where_empty<Item> && items.empty()) return;
     add(std::uint64_t(items.size()));
-    for (const Item& item : items) (add(item.*columns.member), ...);
+    const auto add_unless = [this](bool left_out, const auto& value) {
+      if (!left_out) add(value);
+    };
+    const auto add_rows = [&](const auto... left_out) {
+      for (const Item& item : items) (add_unless(left_out, item.*columns.member), ...);
+    };
+    add_rows(fields::is_left_out(columns, items)...);
   }
 
  private:

@@ -1,0 +1,136 @@
+// How the stiffness of specimens at small strain grows with the pressure: G0 ~ p^(1/3) of smooth spheres, p^(1/2) of
+// cones, between of rough spheres (Goddard 1990; Otsubo et al. 2017).
+#include <cmath>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/tangent.hpp"
+#include "tests/pack/recipes.hpp"
+#include "tests/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+Material glass(double modulus) {
+  Material m;
+  m.young_modulus = modulus;
+  m.poisson_ratio = 0.25;
+  m.roughness = 4e-7;
+  m.cone_slope = 0.05;
+  m.friction = 0.5;
+  return m;
+}
+
+double shear_modulus(const Rve& rve) {
+  const Eigen::MatrixXd c = elastic_tangent(rve.network());
+  return (c(3, 3) + c(4, 4) + c(5, 5)) / 3;
+}
+
+double overlap_at(Law law, const Material& m, double radius, double force) {
+  ContactModel model;
+  model.law = law;
+  const PairParameters q = mix(model, {}, m, radius, 1, m, radius, 1, 0);
+  return with_law(law, [&](auto each) {
+    using Force = typename decltype(each)::Force;
+    double low = 0, high = radius;
+    for (int halving = 0; halving < 200; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (Force::normal_force(q.kn, middle, Force::root(middle, q.law_constant), q.law_constant) < force ? low : high) =
+          middle;
+    }
+    return high;
+  });
+}
+
+/// G of a face-centred crystal of spheres of radius 1 mm at a pressure, Pa.
+double crystal_modulus(Law law, double pressure) {
+  constexpr double radius = 1e-3;
+  const Material m = glass(70e9);
+  double spacing = 2 * radius;  // p = 2 f l/V, V = l^3/sqrt2
+  for (int round = 0; round < 5; ++round)
+    spacing = 2 * radius - overlap_at(law, m, radius, pressure * spacing * spacing / (2 * std::sqrt(2.0)));
+  const double edge = std::sqrt(2.0) * spacing;
+  Specimen s = empty_specimen(Shape::sphere, 2 * edge, m, law);
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i)
+        if ((i + j + k) % 2 == 0) add_grain(s, 0.5 * edge * Vector3(i + 0.1, j + 0.2, k + 0.3), radius);
+  const Rve rve(s);
+  REQUIRE(test::pressure(rve.stress(), 3) == Approx(pressure).epsilon(1e-6));
+  return shear_modulus(rve);
+}
+
+MixedTarget to_pressure(const Rve& rve, double wanted) {
+  MixedTarget target;
+  const Matrix3 now = rve.stress();
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) {
+      MixedTarget::Row row;
+      if (i == j) {
+        row.stress(i, i) = 1;
+        row.value = -wanted - now(i, i);
+        row.scale = wanted;
+      } else {
+        row.strain(i, j) = row.strain(j, i) = 0.5;
+      }
+      target.rows.push_back(row);
+    }
+  target.tolerance = 1e-3;
+  return target;
+}
+
+/// Exponent of G0 between 50 and 800 kPa of 200 spheres that this law packed, and G0 at 50 kPa.
+struct Growth {
+  double exponent, modulus, contacts_gained;
+};
+Growth growth_of(Law law) {
+  pack::Recipe recipe = spheres(200);
+  recipe.contact.law = law;
+  const Material grain = glass(7e9);
+  recipe.materials[0].roughness = grain.roughness;
+  recipe.materials[0].cone_slope = grain.cone_slope;
+  recipe.stress = pack::isotropic_stress(5e4, Shape::sphere);
+  Rve rve(pack::draw(recipe, 1, 0.2, nullptr).specimen);
+  rve.relax(1e-6, 200'000);
+  const double first = shear_modulus(rve), contacts = coordination_number(rve.network());
+  for (const double p : {1e5, 2e5, 4e5, 8e5}) REQUIRE(rve.apply(to_pressure(rve, p), 0).report.target_held);
+  rve.relax(1e-6, 200'000);
+  const double p = test::pressure(rve.stress(), 3);
+  return {std::log(shear_modulus(rve) / first) / std::log(p / 5e4), first, coordination_number(rve.network()) - contacts};
+}
+
+}  // namespace
+
+TEST_CASE("a crystal, whose contacts stay, has the exponents 1/3, 1/2 and one between that falls with the pressure") {
+  const double pressures[] = {50e3, 100e3, 200e3, 400e3, 800e3};
+  double last = 0.5;
+  for (int k = 1; k < 5; ++k) {
+    const auto exponent = [&](Law law) {
+      return std::log2(crystal_modulus(law, pressures[k]) / crystal_modulus(law, pressures[k - 1]));
+    };
+    CHECK(exponent(Law::hertz_mindlin) == Approx(1.0 / 3).margin(1e-3));
+    CHECK(exponent(Law::cones) == Approx(0.5).margin(2e-3));
+    const double rough = exponent(Law::hertz_rough);
+    CHECK(rough > 0.34);
+    CHECK(rough <= last);
+    last = rough;
+    CHECK(crystal_modulus(Law::hertz_rough, pressures[k]) < crystal_modulus(Law::hertz_mindlin, pressures[k]));
+  }
+  // Smooth where it is pressed far.
+  CHECK(std::log2(crystal_modulus(Law::hertz_rough, 2e9) / crystal_modulus(Law::hertz_rough, 1e9)) < 0.345);
+}
+
+TEST_CASE("random packings stiffen a little faster than their contacts, since contacts are gained") {
+  const Growth hertz = growth_of(Law::hertz_mindlin), rough = growth_of(Law::hertz_rough), cones = growth_of(Law::cones);
+  CAPTURE(hertz.exponent, rough.exponent, cones.exponent, hertz.modulus, rough.modulus, cones.modulus,
+          hertz.contacts_gained, rough.contacts_gained, cones.contacts_gained);
+  CHECK(hertz.contacts_gained > 0);
+  CHECK(hertz.exponent > 0.33);
+  CHECK(hertz.exponent < 0.42);
+  CHECK(cones.exponent > 0.5);
+  CHECK(cones.exponent < 0.6);
+  CHECK(rough.exponent > hertz.exponent + 0.02);
+  CHECK(rough.exponent < cones.exponent - 0.02);
+  CHECK(rough.modulus < hertz.modulus);
+}
