@@ -30,21 +30,19 @@ namespace rvelab {
 struct RoughRegime {
   double offset;    ///< delta - x
   double exponent;  ///< n
-  double scale;     ///< x at the end of the regime
-  double end;       ///< root^2 there
-  double energy;    ///< of U = f_n x/(n + 1) + energy, which is continuous
+  double factor;    ///< root^2 = factor x^(2 (n - 1))
+  double energy;    ///< U = f_n x/(n + 1) + energy, so that it is continuous
   double lever;     ///< l/x
   double stored;    ///< 2 f_n x/(n + 1) over root l^2
 };
-consteval RoughRegime rough_regime(double offset, double exponent, double scale, double end, double energy) {
-  return {offset, exponent, scale, end, energy, 1.5 / exponent, 4 * exponent / (3 * (exponent + 1))};
+consteval RoughRegime rough_regime(double offset, double exponent, double factor, double energy) {
+  return {offset, exponent, factor, energy, 1.5 / exponent, 4 * exponent / (3 * (exponent + 1))};
 }
 namespace rough {
 constexpr double first = 2.1093188701006973, second = 24.467023732785824;  // t1, t2
-constexpr RoughRegime asperities = rough_regime(0, 2.5897954953306643, first, 0.75373116169824413, 0);
-constexpr RoughRegime transition =
-    rough_regime(0.82, 1.5830096858101890, second - 0.82, 22.407023732785824, 0.093798171138188617);
-constexpr RoughRegime grains = rough_regime(2.06, 1.5, second - 2.06, second - 2.06, 20.461025134817898);
+constexpr RoughRegime asperities = rough_regime(0, 2.5897954953306643, 0.070238743111199496, 0);
+constexpr RoughRegime transition = rough_regime(0.82, 1.5830096858101890, 0.56044652118892462, 0.093798171138188617);
+constexpr RoughRegime grains = rough_regime(2.06, 1.5, 1, 20.461025134817898);
 }  // namespace rough
 
 struct RoughImpact : HertzImpact {
@@ -72,19 +70,18 @@ struct RoughForce : HertzMindlinForce {
     const V firm = overlap - rough::grains.offset * s, larger = (soft > middle) ? soft : middle;
     return (larger > firm) ? larger : firm;
   }
-  /// One power for both soft regimes: root^2 = end S (x/scale)^(2 (n - 1)). It needs a normal positive number; that of
-  /// a smooth or an open contact is not used.
+  /// One power for both soft regimes. Where there is no contact, or no roughness, it is of no number and is not taken
+  /// (clamping its argument first: 523 instead of 517 instructions a grain-step of spheres, AVX2).
   template <class V>
   static inline __attribute__((always_inline)) V root(V overlap, V s) {
     constexpr RoughRegime a = rough::asperities, b = rough::transition;
-    const V least = V{} + 1e-30, thin = V{} + 1e-15, zero = V{};
     const auto soft = overlap < rough::first * s;
-    const V x = soft ? overlap * (1 / a.scale) : (overlap - b.offset * s) * (1 / b.scale);
-    const V part = x / ((s > thin) ? s : thin);
+    const V x = soft ? overlap : overlap - b.offset * s;
     const V power = soft ? V{} + 2 * (a.exponent - 1) : V{} + 2 * (b.exponent - 1);
-    const V grown = (soft ? a.end * s : b.end * s) * power_of((part > least) ? part : least, power);
+    const V factor = soft ? V{} + a.factor : V{} + b.factor;
+    const V grown = (factor * s) * power_of(x / s, power);
     const V squared = (overlap < rough::second * s) ? grown : overlap - rough::grains.offset * s;
-    return square_root((overlap > 0.0) ? squared : zero);
+    return square_root((overlap > 0.0) ? squared : V{});
   }
   template <class V>
   static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V root, V s) {
@@ -126,7 +123,7 @@ inline double RoughImpact::spring_energy(double k, double overlap, double own) {
 }
 
 struct SurfaceRoughness {
-  double roughness = 0;  ///< S_i, m, >= 0
+  double roughness = 0;  ///< S_i, m, > 0
   static constexpr StoredConstant<SurfaceRoughness> stored[] = {
       {"roughness_m", &SurfaceRoughness::roughness, "m", true}};
 };
@@ -138,9 +135,9 @@ struct HertzRoughLaw {
   template <class Each>
   static void parameters(Each each) {
     HertzMindlinLaw::parameters(each);
-    each(Parameter{"roughness_m", "roughness", "m", number_from_zero,
+    each(Parameter{"roughness_m", "roughness", "m", positive_number,
                    "root mean square height S_q of the surface of a grain",
-                   "give S_q, 1e-7 to 1e-6 for sand, 0 for none"},
+                   "give S_q, 1e-7 to 1e-6 for sand; smooth grains have contact.law = hertz_mindlin"},
          &SurfaceRoughness::roughness);
   }
   template <class Material>

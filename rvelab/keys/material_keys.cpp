@@ -88,10 +88,9 @@ std::vector<KeyEntry> law_constants() {
     const Parameter& p = each.parameter;
     const auto same = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key.name == p.key; });
     if (same != entries.end()) continue;
-    const bool is_length = p.unit == std::string("m"),
-               is_stiffness = p.allowed.low_open;  // a law may do without others
+    const bool is_stiffness = p.allowed.low_open;  // a law may do without the others
     entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key),
-                            is_stiffness || is_length ? usual_of(p.unit) : Usual{}));
+                            is_stiffness ? usual_of(p.unit) : Usual{}));
   }
   return entries;
 }

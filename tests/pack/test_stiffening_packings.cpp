@@ -4,8 +4,9 @@
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/tangent.hpp"
+#include "rvelab/specimen/specimen_check.hpp"
 #include "tests/pack/recipes.hpp"
-#include "tests/specimens.hpp"
+#include "tests/solver/resolved.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -80,24 +81,30 @@ MixedTarget to_pressure(const Rve& rve, double wanted) {
   return target;
 }
 
-/// Exponent of G0 between 50 and 800 kPa of 200 spheres that this law packed, and G0 at 50 kPa.
-struct Growth {
-  double exponent, modulus, contacts_gained;
-};
-Growth growth_of(Law law) {
+/// 200 spheres at 50 kPa.
+Specimen packed_by(Law law) {
   pack::Recipe recipe = spheres(200);
   recipe.contact.law = law;
   const Material grain = glass(7e9);
   recipe.materials[0].roughness = grain.roughness;
   recipe.materials[0].cone_slope = grain.cone_slope;
   recipe.stress = pack::isotropic_stress(5e4, Shape::sphere);
-  Rve rve(pack::draw(recipe, 1, 0.2, nullptr).specimen);
+  return pack::draw(recipe, 1, 0.2, nullptr).specimen;
+}
+
+/// Exponent of G0 between 50 and 800 kPa, and G0 at 50 kPa.
+struct Growth {
+  double exponent, modulus, contacts_gained;
+};
+Growth growth_of(Law law) {
+  Rve rve(packed_by(law));
   rve.relax(1e-6, 200'000);
   const double first = shear_modulus(rve), contacts = coordination_number(rve.network());
   for (const double p : {1e5, 2e5, 4e5, 8e5}) REQUIRE(rve.apply(to_pressure(rve, p), 0).report.target_held);
   rve.relax(1e-6, 200'000);
   const double p = test::pressure(rve.stress(), 3);
-  return {std::log(shear_modulus(rve) / first) / std::log(p / 5e4), first, coordination_number(rve.network()) - contacts};
+  return {std::log(shear_modulus(rve) / first) / std::log(p / 5e4), first,
+          coordination_number(rve.network()) - contacts};
 }
 
 }  // namespace
@@ -122,7 +129,8 @@ TEST_CASE("a crystal, whose contacts stay, has the exponents 1/3, 1/2 and one be
 }
 
 TEST_CASE("random packings stiffen a little faster than their contacts, since contacts are gained") {
-  const Growth hertz = growth_of(Law::hertz_mindlin), rough = growth_of(Law::hertz_rough), cones = growth_of(Law::cones);
+  const Growth hertz = growth_of(Law::hertz_mindlin), rough = growth_of(Law::hertz_rough),
+               cones = growth_of(Law::cones);
   CAPTURE(hertz.exponent, rough.exponent, cones.exponent, hertz.modulus, rough.modulus, cones.modulus,
           hertz.contacts_gained, rough.contacts_gained, cones.contacts_gained);
   CHECK(hertz.contacts_gained > 0);
@@ -133,4 +141,51 @@ TEST_CASE("random packings stiffen a little faster than their contacts, since co
   CHECK(rough.exponent > hertz.exponent + 0.02);
   CHECK(rough.exponent < cones.exponent - 0.02);
   CHECK(rough.modulus < hertz.modulus);
+}
+
+TEST_CASE("increments of packings that stiffen keep below their estimate") {
+  Ratios to_estimate;
+  for (const Law law : {Law::hertz_rough, Law::cones}) {
+    const Specimen s = packed_by(law);
+    for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
+      for (const double size : {1e-6, 1e-5, 1e-4}) {
+        const Judged made = judged(s, size * direction);
+        CHECK(made.report.in_equilibrium);
+        to_estimate.push_back(made.error / made.report.error_estimate);
+      }
+  }
+  CHECK(to_estimate.root_mean_square() < 0.6);
+  CHECK(to_estimate.share_below_one() >= 0.94);
+}
+
+TEST_CASE("tangential forces stay as they are where another law, or another roughness, changes their stiffness") {
+  // What is stored of the stiffness so far is of the law so far: the next step must not take its ratio.
+  const Specimen before = packed_by(Law::hertz_mindlin);
+  const auto stored_in = [](const Specimen& s) {
+    double sum = 0;
+    for (const Contact& c : s.contacts) sum += c.last_root_overlap;
+    return sum;
+  };
+  const auto changed = [&](Law law, double roughness) {
+    Specimen s = before;
+    s.contact.law = law;
+    s.materials[0].roughness = roughness;
+    fit_state_to_parameters(s, before.contact, before.materials);
+    return s;
+  };
+  CHECK(stored_in(before) > 0);
+  CHECK(stored_in(changed(Law::hertz_mindlin, 1e-6)) == stored_in(before));
+  CHECK(stored_in(changed(Law::cones, 1e-6)) == 0);
+  Rve rve(changed(Law::hertz_rough, 1e-7));
+  CHECK(stored_in(rve.specimen()) == 0);
+  double forces = 0, as_before = 0;
+  for (const ContactState& c : rve.network().contacts) forces += c.tangential_force.norm();
+  for (const Contact& c : before.contacts) as_before += c.tangential_force.norm();
+  CHECK(forces == Approx(as_before).epsilon(1e-9));
+  rve.relax(1e-4, 100'000);
+  CHECK(stored_in(rve.specimen()) > 0);
+  std::vector<Material> materials = rve.specimen().materials;
+  materials[0].roughness = 4e-7;
+  rve.set_materials(materials);
+  CHECK(stored_in(rve.specimen()) == 0);
 }

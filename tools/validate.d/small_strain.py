@@ -1,6 +1,6 @@
 """Stiffness at small strain against pressure by contact law: small_strain.py PROGRAM WORK RESULTS [SPECIMENS]
 
-Specimens of pack_hertz with the moduli of glass, packed by each law at 50 kPa, compressed in doubling steps to 800 kPa; at each
+Specimens of pack_hertz, 500 grains with the moduli of glass, packed by each law at 50 kPa, compressed in doubling steps to 800 kPa; at each
 pressure G0, the mean of the three shear stiffnesses of the network with every contact stuck (probe, method = "linear"). The
 exponent n of G0 ~ p^n is that of a straight line through the logarithms.
 
@@ -23,7 +23,7 @@ LAWS = {  # name, settings, published range of the exponent, colour
     "rough_1": ("rough, S_q = 1 um", ["contact.law=hertz_rough", "material.roughness_m=1e-6"]),
     "cones": ("cones of slope 0.02", ["contact.law=cones", "material.cone_slope=0.02"]),
 }
-GLASS = ["material.young_modulus_Pa=70e9", "target.pressure_Pa=50e3"]
+GLASS = ["pack.number=500", "material.young_modulus_Pa=70e9", "target.pressure_Pa=50e3"]
 
 
 def protocol():

@@ -53,9 +53,10 @@ constexpr GrainKernel grain_kernel() {
 
 /// Which kernels there are in more than one lane; where there are none the scalar reference does the work (README.md
 /// says for how much). The slip of other codes serves comparison, and no recipe gives the other laws to grains that are
-/// not round.
+/// not round; those that stiffen as sands do may be asked of superellipsoids.
 template <class Pairs, class Force>
-constexpr bool has_lanes = Pairs::By::round || is_any_of<Force, LinearForce, HertzMindlinForce>;
+constexpr bool has_lanes = Pairs::By::round || is_any_of<Force, LinearForce, HertzMindlinForce> ||
+                           (Pairs::By::rigid && is_any_of<Force, RoughForce, ConesForce>);
 
 template <class Pairs, int W, bool Advance, class Law, bool Rolling, bool Dashpot>
 PairKernel by_slip(const KernelConfiguration& key) {
