@@ -52,17 +52,6 @@ struct Field {
     return stated;
   }
 };
-/// Whether a file omits this column of these rows.
-template <class Owner, class Value>
-bool is_left_out(const Field<Owner, Value>& column, const std::vector<Owner>& rows) {
-  if constexpr (std::is_same_v<Value, double>) {
-    if (!column.left_out_at_zero) return false;
-    for (const Owner& row : rows)
-      if (row.*column.member != 0) return false;
-    return true;
-  }
-  return false;
-}
 template <class Owner, class Value, class... More>
 Field(const char*, Value Owner::*, const char*, More...) -> Field<Owner, Value>;
 
