@@ -61,8 +61,8 @@ TEST_CASE("a sheared and turned state comes back through CSV to round-off, conta
 
 TEST_CASE("every parameter goes through the material file, whatever law and dashpot use it") {
   const Folder folder;
-  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness, Law::hertz_rough,
-                        Law::cones}) {
+  for (const Law law :
+       {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness, Law::hertz_rough, Law::cones}) {
     for (const Dashpot dashpot : {Dashpot::none, Dashpot::coefficient, Dashpot::viscoelastic}) {
       if (dashpot == Dashpot::viscoelastic && (law == Law::hertz_rough || law == Law::cones)) continue;
       Specimen specimen;

@@ -146,7 +146,8 @@ TEST_CASE("the energy balance of normal forces closes as the square of the time 
 
 TEST_CASE("the energy balance of stuck contacts closes") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
-  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_stiffness, Law::hertz_mindlin, Law::hertz_rough, Law::cones);
+  const Law law =
+      GENERATE(Law::linear_stiffness, Law::hertz_stiffness, Law::hertz_mindlin, Law::hertz_rough, Law::cones);
   const bool turning = GENERATE(false, true), rolling = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), name(law), turning, rolling);
   Specimen s = packing(shape, law);
