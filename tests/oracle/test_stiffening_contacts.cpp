@@ -119,6 +119,9 @@ TEST_CASE("an unloading normal force takes the tangential one along with its sti
           Approx(opened.tangential_stiffness / slipped.tangential_stiffness).epsilon(1e-9));
     const ContactState closed = pair.drive(0.4 * part * combined, 0, 0);
     CHECK(closed.tangential_force.norm() == Approx(opened.tangential_force.norm()).epsilon(1e-9));
+    const ContactState nudged = pair.drive(-1e-5 * part * combined, 0, 0);
+    CHECK(std::log(closed.tangential_stiffness / nudged.tangential_stiffness) / (closed.overlap - nudged.overlap) ==
+          Approx(closed.stiffness_growth).epsilon(1e-3));  // what the tangent of the network takes
     // The spring holds what it held: unloading takes no energy out of it that the law does not book.
     CHECK(slipped.elastic_energy - energy_at(two_grains(shape, material(), law, 1), slipped.overlap) ==
           Approx(0.5 * start * start / slipped.tangential_stiffness).epsilon(1e-3));
