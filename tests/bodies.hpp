@@ -28,6 +28,8 @@ inline Material body_material(double friction = 0.5) {
   Material m = linear_material(1e6, 5e5, friction);
   m.young_modulus = 1e8;
   m.poisson_ratio = 0.2;
+  m.roughness = 5e-6;
+  m.cone_slope = 0.05;
   return m;
 }
 

@@ -29,6 +29,8 @@ inline Material material_of_every_law() {
   Material m = linear_material(2e6, 1e6, 0.4);
   m.young_modulus = 2e8;
   m.poisson_ratio = 0.2;
+  m.roughness = 2e-5;
+  m.cone_slope = 0.05;
   m.rolling_stiffness = 0.8;
   m.rolling_friction = 0.05;
   return m;

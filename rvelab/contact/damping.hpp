@@ -5,6 +5,7 @@
 //   p = 1/2  viscoelastic, cn = eta sqrt(r*) m* (LAMMPS' name and form),
 //   p = 1/4  restitution with Hertz laws, cn = sqrt(5) zeta sqrt(m* k); tsuji: cn = alpha sqrt(m* k) with the
 //            polynomial alpha(e) that LAMMPS fits to Tsuji et al. 1992, for its records.
+// Restitution with cones: p = 1/2, cn = sqrt(6) zeta sqrt(m* k); with rough surfaces: hertz_rough.hpp.
 // zeta from the coefficient of restitution: impact.hpp. A dashpot acts at a rate only: a sub-step in quasi-static
 // loading is no second. Local damping (Liang and Zhao 2019, eq. 29): f <- f - alpha |f| v/|v| on fluctuation
 // velocities, or per component f_k <- f_k - alpha |f_k| sign(v_k), which depends on the axes. v is the velocity half a

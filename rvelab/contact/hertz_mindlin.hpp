@@ -27,6 +27,7 @@ struct HertzMindlinForce : HertzStiffnessForce {
     const V ratio = root / ((last_root > 0.0) ? last_root : one);
     return ((last_root > 0.0) & (root < last_root)) ? ratio : one;
   }
+  static double stiffness_growth(double overlap, double /*own*/) { return 0.5 / overlap; }
 };
 
 struct PoissonRatio {
@@ -51,16 +52,23 @@ struct HertzMindlinLaw {
                    "give Poisson's ratio of the grains, 0.25 for quartz"},
          &PoissonRatio::poisson_ratio);
   }
+  /// 1/E* and 1/G*, 1/Pa.
   template <class Material>
-  static ContactConstants mix(const Material& a, double ri, const Material& b, double rj, double /*section*/) {
-    const auto compression = [](const Material& m) {
-      return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
-    };
-    const auto shear = [](const Material& m) {
+  static double compression(const Material& a, const Material& b) {
+    const auto of = [](const Material& m) { return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus; };
+    return of(a) + of(b);
+  }
+  template <class Material>
+  static double shear(const Material& a, const Material& b) {
+    const auto of = [](const Material& m) {
       return 2 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio) / m.young_modulus;
     };
+    return of(a) + of(b);
+  }
+  template <class Material>
+  static ContactConstants mix(const Material& a, double ri, const Material& b, double rj, double /*section*/) {
     const double root = __builtin_sqrt(ri * rj / (ri + rj));
-    return {4 * root / (3 * (compression(a) + compression(b))), 8 * root / (shear(a) + shear(b))};
+    return {4 * root / (3 * compression(a, b)), 8 * root / shear(a, b)};
   }
 };
 

@@ -11,6 +11,7 @@ namespace rvelab {
 
 struct HertzStiffnessForce : LinearForce {
   static constexpr bool needs_root_overlap = true;
+  static constexpr bool is_hertz = true;
   using Impact = HertzImpact;
 
   template <class V>

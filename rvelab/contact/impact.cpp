@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "rvelab/cell/cube_root.hpp"
+
 namespace rvelab {
 namespace {
 
@@ -60,6 +62,13 @@ double fifth_root(double x) {
     root += 0.2 * (mantissa / (squared * squared) - root);
   }
   return std::ldexp(root, fifths);
+}
+
+double ConeImpact::frequency(double measure) { return measure > 0 ? std::sqrt(2 * cube_root(1.5 * measure)) : 0; }
+
+double ConeImpact::reach(double k, double mass, double v, double /*own*/) {
+  const double cubed = 1.5 * mass * v * v / k;
+  return cubed > 0 && std::isfinite(cubed) ? cube_root(cubed) : cubed;
 }
 
 double damping_ratio(double restitution, bool no_tension) {

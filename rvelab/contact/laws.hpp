@@ -4,7 +4,9 @@
 // energy from the overlap, which the step kernels are compiled for.
 #pragma once
 
+#include "rvelab/contact/cones.hpp"
 #include "rvelab/contact/hertz_mindlin.hpp"
+#include "rvelab/contact/hertz_rough.hpp"
 #include "rvelab/contact/hertz_stiffness.hpp"
 #include "rvelab/contact/linear.hpp"
 #include "rvelab/contact/linear_adhesive.hpp"
@@ -13,12 +15,13 @@
 namespace rvelab {
 
 /// Normal and tangential law of all contacts of a specimen.
-enum class Law { linear, linear_stiffness, hertz_mindlin, hertz_stiffness, linear_adhesive };
+enum class Law { linear, linear_stiffness, hertz_mindlin, hertz_stiffness, linear_adhesive, hertz_rough, cones };
 
 template <class... Each>
 struct TypeList {};
 /// In the order of Law.
-using Laws = TypeList<LinearLaw, LinearStiffnessLaw, HertzMindlinLaw, HertzStiffnessLaw, LinearAdhesiveLaw>;
+using Laws = TypeList<LinearLaw, LinearStiffnessLaw, HertzMindlinLaw, HertzStiffnessLaw, LinearAdhesiveLaw,
+                      HertzRoughLaw, ConesLaw>;
 
 template <class... Each>
 constexpr int count_of(TypeList<Each...>) {
@@ -27,7 +30,8 @@ constexpr int count_of(TypeList<Each...>) {
 constexpr int law_count = count_of(Laws{});
 
 /// What the laws read of a material, in the order of files.
-using ConstantGroups = TypeList<YoungModulus, StiffnessRatio, PoissonRatio, GivenStiffness, Adhesion>;
+using ConstantGroups =
+    TypeList<YoungModulus, StiffnessRatio, PoissonRatio, GivenStiffness, Adhesion, SurfaceRoughness, ConeSlope>;
 
 template <class>
 struct AllOf;

@@ -7,6 +7,7 @@
 // compiles its own copy.
 #pragma once
 
+#include "rvelab/contact/damping.hpp"
 #include "rvelab/contact/impact.hpp"
 #include "rvelab/contact/parameter.hpp"
 
@@ -17,10 +18,18 @@ struct LinearForce {
   static constexpr bool needs_root_overlap = false;
   static constexpr bool stores_root_overlap = false;
   static constexpr bool has_law_constant = false;
-  static constexpr bool has_hertz_radius = false;  ///< the constants hold sqrt(r*) (hertz_curvature.hpp)
+  static constexpr bool has_hertz_radius = false;   ///< the constants hold sqrt(r*) (hertz_curvature.hpp)
+  static constexpr bool is_hertz = false;           ///< smooth spheres: JKR, DMT and LAMMPS' dashpots build on them
+  static constexpr bool root_has_constant = false;  ///< `root` is not that of the overlap alone
   using Impact = LinearImpact;
 
-  /// Repulsion, N. `root` is sqrt(overlap), `own` the law's own constant of the contact.
+  /// What the stiffnesses go with, m^0.5: sqrt(overlap) of most laws. The overlap is >= 0, `own` the law's own constant
+  /// of the contact.
+  template <class V>
+  static inline __attribute__((always_inline)) V root(V overlap, V /*own*/) {
+    return square_root(overlap);
+  }
+  /// Repulsion, N.
   template <class V>
   static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V /*root*/, V /*own*/) {
     return kn * overlap;
@@ -39,6 +48,13 @@ struct LinearForce {
   template <class V>
   static inline __attribute__((always_inline)) V carried(V /*root*/, V /*last_root*/, bool /*unload_rescale*/) {
     return V{} + 1.0;
+  }
+  /// d ln k_t / d overlap, 1/m, of laws that carry the stored force by the stiffness.
+  static double stiffness_growth(double /*overlap*/, double /*own*/) { return 0; }
+  /// Dashpot coefficient now, N s/m.
+  template <class V>
+  static inline __attribute__((always_inline)) V dashpot(V cn, V /*overlap*/, V root, V /*own*/, int quarters) {
+    return dashpot_coefficient(cn, root, quarters);
   }
   /// The force that presses the surfaces together, which friction and the rolling cap go with (coulomb.hpp), N.
   template <class V>

@@ -18,9 +18,8 @@
 namespace rvelab {
 namespace {
 
-/// Whether a collision is that of Hertz springs, f_n = k x^(3/2).
-bool stiffens(Law law) {
-  return with_law(law, [](auto each) { return decltype(each)::Force::Impact::stiffens; });
+bool is_hertz(Law law) {
+  return with_law(law, [](auto each) { return decltype(each)::Force::is_hertz; });
 }
 
 /// Whether r* of the grains is part of a law's constants.
@@ -86,9 +85,9 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
   findings.expect(number_from_zero, "damping.tangential_ratio", damping.tangential_ratio, "",
                   "give 0 for a normal dashpot alone");
   const bool viscoelastic = damping.dashpot == Dashpot::viscoelastic;
-  if ((viscoelastic || damping.dashpot == Dashpot::tsuji) && !stiffens(model.law))
+  if ((viscoelastic || damping.dashpot == Dashpot::tsuji) && !is_hertz(model.law))
     findings.add(std::string("damping.dashpot = ") + name(damping.dashpot) +
-                 " does not go with contact.law = " + name(model.law) + "; allowed: " + names_where<Law>(stiffens) +
+                 " does not go with contact.law = " + name(model.law) + "; allowed: " + names_where<Law>(is_hertz) +
                  "; use damping.dashpot = restitution" + (viscoelastic ? " or coefficient" : ""));
   if (viscoelastic || damping.dashpot == Dashpot::coefficient)
     findings.expect(number_from_zero, "damping.normal_coefficient", damping.normal_coefficient,

@@ -39,7 +39,7 @@ struct ContactModel {
   Law law = Law::linear;
   Slip slip = Slip::consistent;
   bool rolling = false;        ///< rolling moment between grains (its parameters stand in the materials)
-  bool unload_rescale = true;  ///< hertz_mindlin: f_t scales by sqrt(delta/delta_old) as delta falls
+  bool unload_rescale = true;  ///< hertz_mindlin, hertz_rough, cones: f_t falls with k_t as delta falls
   HertzRadius hertz_radius = HertzRadius::equivalent;  ///< hertz_mindlin, ellipses (hertz_curvature.hpp)
 };
 
@@ -70,13 +70,13 @@ const std::vector<LawParameter>& law_parameters();
 /// Parameters of one pair of grains, computed once when the pair is listed.
 struct PairParameters : ContactConstants {
   double friction = 0;    ///< the smaller of the two
-  double kr = 0;          ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
+  double kr = 0;          ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5, cones N m/m
   double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
   double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
 };
 
-/// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution and
-/// tsuji with a Hertz law).
+/// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic; restitution with
+/// cones), 1/4 (restitution and tsuji with a Hertz law; of rough surfaces where they are pressed far).
 double dashpot_power(Law law, Dashpot dashpot);
 
 /// Mixes two materials for grains of radii ri, rj (m) and masses mi, mj (kg). `section`: cross-section of the smaller

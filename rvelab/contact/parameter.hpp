@@ -30,12 +30,13 @@ struct StoredConstant {
   const char* dataset;
   double Group::*value;
   const char* unit;
+  bool left_out_at_zero = false;  ///< a file holds it only where a material has it
 };
 
 /// Constants of one contact: f_n and the current stiffnesses follow from them and the overlap.
 struct ContactConstants {
-  double kn = 0;            ///< of f_n: linear N/m, Hertz N/m^1.5
-  double kt = 0;            ///< of k_t: N/m; hertz_mindlin N/m^1.5
+  double kn = 0;            ///< of f_n: linear N/m, Hertz N/m^1.5, cones N/m^2
+  double kt = 0;            ///< of k_t: N/m; hertz_mindlin and hertz_rough N/m^1.5, cones N/m^2
   double law_constant = 0;  ///< one more, of laws that have one
 };
 

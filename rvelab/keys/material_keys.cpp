@@ -72,10 +72,12 @@ std::string meaning_of(const char* key) {
   return text;
 }
 
-/// Moduli from a gel to diamond, stiffnesses of contacts of such grains from 1e-6 to 1 m.
+/// Moduli from a gel to diamond, stiffnesses of contacts of such grains from 1e-6 to 1 m; roughness from polished glass
+/// to gravel.
 Usual usual_of(const std::string& unit) {
   if (unit == "Pa") return {{1e4, 2e12}};
   if (unit == "N/m" || unit == "N/m^1.5") return {{1e-2, 1e15}};
+  if (unit == "m") return {{1e-10, 1e-4}};
   return {};
 }
 
@@ -133,7 +135,7 @@ std::vector<KeyEntry> contacts() {
             "where slip is measured and force acts; full_radius as LAMMPS, full_radius_ratcheting as YADE"),
       entry(t, "rolling", "-", &ContactModel::rolling, any, "rolling moment between grains"),
       entry(t, "unload_rescale", "-", &ContactModel::unload_rescale, any,
-            "hertz_mindlin: the tangential force falls with sqrt(overlap) on unloading"),
+            "hertz_mindlin, hertz_rough, cones: the tangential force falls with its stiffness on unloading"),
       entry(t, "hertz_radius", "-", &ContactModel::hertz_radius, any,
             "hertz_mindlin, ellipses and superellipsoids: radius of the law: that of the disc or sphere of the same "
             "size, or "
@@ -154,7 +156,7 @@ std::vector<KeyEntry> damping() {
       entry(t, "viscoelastic_1_m_s", "1/(m s)", &Damping::normal_coefficient, not_negative,
             "dashpot = viscoelastic: eta of c_n = eta sqrt(r* overlap) m*"),
       entry(t, "restitution", "1", &Damping::restitution, {0, 1, true, false},
-            "dashpot = restitution: coefficient of restitution of two grains, linear and Hertz; tsuji: e of LAMMPS' "
+            "dashpot = restitution: coefficient of restitution of two grains, any law; tsuji: e of LAMMPS' "
             "polynomial, Hertz only (grains rebound at 0.85 for 0.8, 0.44 for 0.3)"),
       entry(t, "tangential_ratio", "1", &Damping::tangential_ratio, not_negative,
             "tangential over normal dashpot coefficient"),

@@ -107,7 +107,7 @@ HertzRadius hertz_radius(const Network& network) {
 LinearContact unloading_terms(const ContactState& contact, double ri, double rj) {
   ContactRow dl = ContactRow::Zero();
   dl.head<3>() = contact.normal.transpose();
-  const ContactRow relative = -0.5 / contact.overlap * dl;
+  const ContactRow relative = -contact.stiffness_growth * dl;
   LinearContact extra;
   extra.force = contact.tangential_force * relative;
   add_torques(extra, contact, ri, rj, extra.force, contact.rolling_moment * relative, ContactMatrix::Zero(),
@@ -162,7 +162,7 @@ LinearOutlineContact linearised_outlines(Shape shape, const ContactState& contac
   };
   set_torques(linear.law, arm_i, arm_j, moment);
 
-  const ContactRow relative = 0.5 / contact.overlap * (overlap + radius);
+  const ContactRow relative = contact.stiffness_growth * (overlap + radius);
   linear.unloading.force = contact.tangential_force * relative;
   set_torques(linear.unloading, ContactMatrix::Zero(), ContactMatrix::Zero(), contact.rolling_moment.z() * relative);
   return linear;

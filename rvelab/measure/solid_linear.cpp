@@ -105,7 +105,7 @@ LinearOutlineContact linearised_solids(const ContactState& contact, const GrainS
   linear.law.torque_i = force * dxi - cross_of(xi) * linear.law.force - dm;
   linear.law.torque_j = -force * dxj + cross_of(xj) * linear.law.force + dm;
 
-  const ContactRow relative = 0.5 / contact.overlap * (overlap + radius);
+  const ContactRow relative = contact.stiffness_growth * (overlap + radius);
   const ContactMatrix rolling = moment * relative;
   linear.unloading.force = ft * relative;
   linear.unloading.torque_i = -cross_of(xi) * linear.unloading.force - rolling;

@@ -57,10 +57,15 @@ StoredPlace place_of(const Specimen& specimen, const Contact& contact) {
 
 /// The root of the overlap (> 0) that laws use, m^0.5.
 double overlap_root_of(const Specimen& specimen, const Contact& contact) {
-  if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
-    return std::sqrt(overlap_of(specimen, contact));
-  const StoredPlace at = place_of(specimen, contact);
-  return std::sqrt(at.overlap * at.radius_ratio);
+  double overlap = 0;  // times R*/r*
+  if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent) {
+    overlap = overlap_of(specimen, contact);
+  } else {
+    const StoredPlace at = place_of(specimen, contact);
+    overlap = at.overlap * at.radius_ratio;
+  }
+  const double own = parameters_of(specimen, contact).law_constant;
+  return with_law(specimen.contact.law, [&](auto law) { return decltype(law)::Force::root(overlap, own); });
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ PairParameters parameters_of(const Specimen& specimen, const Contact& contact);
 /// Elastic, N, repulsion positive; 0 without overlap.
 double normal_force_of(const Specimen& specimen, const Contact& contact);
 
-/// Sets Contact::last_root_overlap of all: sqrt(overlap) with laws that store it (hertz_mindlin), else zero.
+/// Sets Contact::last_root_overlap of all: the root of laws that store it (hertz_mindlin), else zero.
 void set_root_overlaps(Specimen& specimen);
 
 }  // namespace rvelab

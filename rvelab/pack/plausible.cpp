@@ -24,8 +24,21 @@ double mean_force(const Pressed& pressed) {
   return pressed.pressure * std::numbers::pi * r * r * 1.65 * 4 / 5.5;
 }
 
-bool stiffens(Law law) {
-  return with_law(law, [](auto each) { return decltype(each)::Force::needs_root_overlap; });
+/// f_n of two grains of a material and this radius, N.
+double force_at(const Pressed& pressed, const ContactModel& model, const Material& material, double overlap) {
+  const double r = pressed.radius, section = grain_section(pressed.shape, r, pressed.thickness);
+  const PairParameters pair = mix(model, Damping{}, material, r, 1, material, r, 1, section);
+  return with_law(model.law, [&](auto law) {
+    using Force = typename decltype(law)::Force;
+    return Force::normal_force(pair.kn, overlap, Force::root(overlap, pair.law_constant), pair.law_constant);
+  });
+}
+
+/// f_n grows in proportion to the stiffness that a law reads, but for a pull-off force, which stays: its value over
+/// that of the material with which grains of that mean force overlap by so much.
+double stiffness_ratio_at(const Pressed& pressed, const ContactModel& model, const Material& material, double overlap) {
+  const double pull = -force_at(pressed, model, material, 0);
+  return (mean_force(pressed) + pull) / (force_at(pressed, model, material, overlap) + pull);
 }
 
 /// The stiffness that a law reads is the first of its parameters.
@@ -42,13 +55,15 @@ std::string stiffness_in_words(const ContactModel& model, const Material& materi
 }
 
 /// "; likely in MPa or GPa: write ..." of a stiffness, by what leads to overlaps that are usual.
-std::string likely(const Pressed& pressed, const ContactModel& model, const Material& material, double overlap) {
+std::string likely(const Pressed& pressed, const ContactModel& model, const Material& material) {
   const LawParameter& stiffness = stiffness_of(model.law);
-  const double given = material.*stiffness.value, power = stiffens(model.law) ? 1.5 : 1;
+  const double given = material.*stiffness.value;
   const std::vector<keys::Key>& known = keys::known_keys();
   const auto key = std::find_if(known.begin(), known.end(),
                                 [&](const keys::Key& each) { return each.name == stiffness.parameter.key; });
-  const auto stiffness_at = [&](double wanted) { return given * std::pow(overlap / wanted, power); };
+  const auto stiffness_at = [&](double wanted) {
+    return given * stiffness_ratio_at(pressed, model, material, wanted * pressed.radius);
+  };
   std::string text = keys::likely_unit(
       stiffness.parameter.unit, given,
       {{stiffness_at(most_usual_overlap), std::min(stiffness_at(least_usual_overlap), key->usual.values.high)}});
@@ -61,10 +76,15 @@ std::string likely(const Pressed& pressed, const ContactModel& model, const Mate
 }  // namespace
 
 double expected_overlap(const Pressed& pressed, const ContactModel& model, const Material& material) {
-  const double r = pressed.radius, section = grain_section(pressed.shape, r, pressed.thickness);
-  const PairParameters pair = mix(model, Damping{}, material, r, 1, material, r, 1, section);
-  const double ratio = (mean_force(pressed) + pair.law_constant) / pair.kn;
-  return (stiffens(model.law) ? std::pow(ratio, 2.0 / 3) : ratio) / r;
+  // f_n grows with the overlap: halving of ratios, to the last bit.
+  const double wanted = mean_force(pressed);
+  double low = 1e-30, high = 1e30;
+  while (high > low * (1 + 1e-15)) {
+    const double middle = std::sqrt(low * high);
+    if (middle <= low || middle >= high) break;
+    (force_at(pressed, model, material, middle * pressed.radius) < wanted ? low : high) = middle;
+  }
+  return high;
 }
 
 void expect_possible(const Pressed& pressed, const ContactModel& model, const std::vector<Material>& materials) {
@@ -73,11 +93,11 @@ void expect_possible(const Pressed& pressed, const ContactModel& model, const st
     const double overlap = expected_overlap(pressed, model, material);
     if (!(overlap > 1)) continue;
     const LawParameter& stiffness = stiffness_of(model.law);
-    const double least = material.*stiffness.value * std::pow(overlap, stiffens(model.law) ? 1.5 : 1);
+    const double least = material.*stiffness.value * stiffness_ratio_at(pressed, model, material, pressed.radius);
     throw InputError(stiffness_in_words(model, material) + " is too soft for " + pressed.by + " = " +
                      in_words(pressed.pressure) + ": grains would overlap by " + in_words(overlap) +
                      " of their radius, no such specimen exists; allowed: less than 1, above some " + in_words(least) +
-                     " " + stiffness.parameter.unit + " here; " + likely(pressed, model, material, overlap));
+                     " " + stiffness.parameter.unit + " here; " + likely(pressed, model, material));
   }
 }
 
@@ -90,7 +110,7 @@ std::vector<std::string> unusual_overlaps(const Pressed& pressed, const ContactM
     if (overlap <= most_usual_overlap && overlap >= least_usual_overlap) continue;
     found.push_back(stiffness_in_words(model, material) + " with " + pressed.by + " = " + in_words(pressed.pressure) +
                     " is unusual: grains overlap by some " + in_words(overlap) +
-                    " of their radius; usual: 1e-09 to 0.1; " + likely(pressed, model, material, overlap));
+                    " of their radius; usual: 1e-09 to 0.1; " + likely(pressed, model, material));
     break;  // one line a key
   }
   return found;

@@ -50,7 +50,7 @@ std::vector<GrainPair> pairs_of(const Specimen& specimen, const Network& net) {
   const double thickness = net.dimension() == 2 ? net.cell.lattice(2, 2) : 0;
   if (pairs.empty())
     for (const double radius : specimen.grains.radius) pairs.push_back({radius, radius, thickness, 0, 0});
-  if (!with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::needs_root_overlap; })) return pairs;
+  if (!with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::is_hertz; })) return pairs;
   const Material& material = specimen.materials.front();
   for (GrainPair& pair : pairs)
     pair.contact_stiffness = mix(specimen.contact, specimen.damping, material, pair.radius_i, 1, material,

@@ -39,6 +39,7 @@ struct Field {
   Rows rows = Rows::one;
   Interval allowed{-no_bound, no_bound};
   InPlane plane = InPlane::any;
+  bool left_out_at_zero = false;  ///< of a table: a file has no dataset where all rows are zero
 
   constexpr Field within(Interval range) const {
     Field stated = *this;

@@ -37,7 +37,7 @@ class InteractionCheck : CheckedSpecimen {
       refuse(name + " has " + std::to_string(rows.size()) + " rows; allowed: none, or one for all grains");
     if (rows.empty()) return;
     if (!is_round(s.shape)) refuse(name + " between grains that are not round; allowed: between discs or spheres");
-    const bool hertz = with_law(s.contact.law, [](auto law) { return decltype(law)::Force::needs_root_overlap; });
+    const bool hertz = with_law(s.contact.law, [](auto law) { return decltype(law)::Force::is_hertz; });
     const double mean = std::accumulate(s.grains.radius.begin(), s.grains.radius.end(), 0.0) / double(s.grains.size());
     if (const double reach = Law::reach(rows.front()); reach > mean)
       refuse(name + " makes grains act on one another up to a gap of " + in_words(reach) +

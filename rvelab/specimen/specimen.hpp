@@ -39,7 +39,7 @@ struct Contact {
   /// N, spring part (without dashpot). 2D: (f_t, 0, 0) with f_t along t = (-n_y, n_x), invariant under rotation.
   Vector3 tangential_force = Vector3::Zero();
   Vector3 rolling_moment = Vector3::Zero();  ///< N m
-  double last_root_overlap = 0;              ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
+  double last_root_overlap = 0;  ///< what k_t went with at the last step, m^0.5 (hertz_mindlin: sqrt(delta))
 };
 
 /// A rigid body (clump): some grains that follow each other in Grains and move as one. Contacts are those of its

@@ -285,7 +285,7 @@ void Relations::check_history(std::size_t k, const std::vector<double>& rolling)
   const double reach = s.grains.radius[std::size_t(c.i)] + s.grains.radius[std::size_t(c.j)];
   const double root = with_law(s.contact.law, [&](auto law) {
     using Force = typename decltype(law)::Force;
-    return Force::stores_root_overlap ? std::sqrt(reach) : 1.0;
+    return Force::stores_root_overlap ? Force::root(reach, parameters.law_constant) : 1.0;
   });
   constexpr double round_off = std::numeric_limits<double>::epsilon();
   const double share = 1e-3 + 8 * round_off * (xi.stableNorm() + xj.stableNorm() + shift.stableNorm()) / length;
@@ -331,6 +331,10 @@ void fit_state_to_parameters(Specimen& s, const ContactModel& contact, const std
     if (!c.tangential_force.isZero(0) && !(parameters_of(s, c).kt > 0)) c.tangential_force.setZero();
   if (have_stiffness_of(s, contact, materials)) return;
   s.state.masses = {};
+  // Roots of another law, or of another roughness, are not those that the stored forces go with from now on.
+  const bool has_constant = with_law(s.contact.law, [](auto law) { return decltype(law)::Force::root_has_constant; });
+  if (s.contact.law != contact.law || has_constant)
+    for (Contact& c : s.contacts) c.last_root_overlap = 0;
 }
 
 void check_specimen(const Specimen& s, const std::string& where) {

@@ -5,7 +5,8 @@
 // Each field states the range of its numbers unless all finite ones are allowed (Field::within); constants of a law
 // have theirs in the law (contact/parameter.hpp). check_specimen checks them (specimen_check.hpp).
 //
-// Adding, removing or renaming a field makes a new version of the file format (io/hdf5/schema.hpp).
+// Adding, removing or renaming a field makes a new version of the file format (io/hdf5/schema.hpp), but for one that is
+// left out of the files of specimens without it.
 #pragma once
 
 #include <iterator>
@@ -95,8 +96,10 @@ template <class Group>
 constexpr auto stored_fields() {
   static_assert(std::size(Group::stored) == member_count<Group>(), "a constant of a law is not in its list `stored`");
   return []<std::size_t... k>(std::index_sequence<k...>) {
-    return std::tuple{
-        Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit}...};
+    return std::tuple{Field<Material, double>{.name = Group::stored[k].dataset,
+                                              .member = Group::stored[k].value,
+                                              .units = Group::stored[k].unit,
+                                              .left_out_at_zero = Group::stored[k].left_out_at_zero}...};
   }
   (std::make_index_sequence<std::size(Group::stored)>());
 }

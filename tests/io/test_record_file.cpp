@@ -140,7 +140,9 @@ TEST_CASE("the manual lists exactly the datasets of a file, with their types, sh
       found[entry.name] = entry;
     }
   }
-  CHECK(states == 2 * (of_a_specimen - std::size_t(of_bodies)));
+  // The states have materials of one law: what is left out at zero is left out there.
+  constexpr std::size_t of_other_laws = 2;
+  CHECK(states == 2 * (of_a_specimen - std::size_t(of_bodies) - of_other_laws));
   for (const auto& [name, entry] : found) {
     CAPTURE(name);
     REQUIRE(rows.contains(name));

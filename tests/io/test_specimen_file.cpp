@@ -53,6 +53,27 @@ TEST_CASE("the same specimen gives the same bytes, at any time and place") {
   CHECK(!std::filesystem::exists(folder / "a.h5.tmp"));
 }
 
+TEST_CASE("constants of laws that no material has are in no file of it") {
+  const Folder folder;
+  Specimen specimen = random_specimen(6);
+  for (Material& m : specimen.materials) m.roughness = m.cone_slope = 0;
+  const auto checksum = io::digest(specimen);
+  io::write_specimen(specimen, folder / "without.h5");
+  const auto has = [&](const char* file, const char* name) {
+    return io::Hdf5File::open(folder / file).has(std::string("/materials/") + name);
+  };
+  CHECK(!has("without.h5", "roughness_m"));
+  CHECK(!has("without.h5", "cone_slope"));
+  CHECK(has("without.h5", "adhesion_N"));
+  CHECK(differing_fields(specimen, io::read_specimen(folder / "without.h5")).empty());
+  specimen.materials.back().roughness = 2e-7;
+  CHECK(io::digest(specimen) != checksum);
+  io::write_specimen(specimen, folder / "with.h5");
+  CHECK(has("with.h5", "roughness_m"));
+  CHECK(!has("with.h5", "cone_slope"));
+  CHECK(differing_fields(specimen, io::read_specimen(folder / "with.h5")).empty());
+}
+
 TEST_CASE("how a specimen was packed comes back from its file, and changes nothing else in it") {
   const Folder folder;
   const Specimen written = random_specimen(9);

@@ -62,6 +62,7 @@ ContactState state_of(const Pair& pair) {
   state.normal_stiffness = 1.5 * pair.kn * root;
   state.tangential_stiffness = pair.kt * root;
   state.rolling_stiffness = pair.kr * root;
+  state.stiffness_growth = 0.5 / state.overlap;
   return state;
 }
 

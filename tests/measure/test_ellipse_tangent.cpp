@@ -84,6 +84,7 @@ Moved moved(const TwoEllipses& pair, const Vector9& q, const ContactState* first
   c.normal_stiffness = 1.5 * pair.kn * root;
   c.tangential_stiffness = pair.kt * root;
   c.rolling_stiffness = pair.kr * root;
+  c.stiffness_growth = 0.5 / c.overlap;
   const Vector3 force = c.force(), turn(0, 0, moment);
   Moved result{c, Vector9::Zero()};
   result.forces << force, -c.arm_i.cross(force) - turn, c.arm_j.cross(force) + turn;

@@ -213,6 +213,7 @@ TEST_CASE("rescaling on unloading acts where f_t stands and vanishes with it", "
   // rescaling: the mean has half of it, -(1/V) sum (f_t/2)(-dl/2 delta) (x) b.
   for (ContactState& contact : network.contacts) {
     contact.tangential_force = 1e3 * contact.normal.cross(Vector3(0.3, -0.5, 0.8));
+    contact.stiffness_growth = 0.5 / contact.overlap;
   }
   without.contacts = network.contacts;
   Eigen::MatrixXd expected = affine_tangent(without);

@@ -13,6 +13,8 @@ TEST_CASE("Clumps that meet keep momentum, angular momentum and energy") {
   for (const auto& [shape, law, friction] : {std::tuple{Shape::sphere, Law::linear_stiffness, 0.5},
                                              {Shape::sphere, Law::linear_stiffness, 0.0},
                                              {Shape::sphere, Law::hertz_mindlin, 0.0},
+                                             {Shape::sphere, Law::hertz_rough, 0.0},
+                                             {Shape::sphere, Law::cones, 0.0},
                                              {Shape::disc, Law::linear_stiffness, 0.5},
                                              {Shape::disc, Law::linear_stiffness, 0.0}}) {
     const Clump clump = published_clump(shape == Shape::disc ? "triangle" : "square", dimension_of(shape));

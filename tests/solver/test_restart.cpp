@@ -40,6 +40,15 @@ std::vector<Configuration> configurations() {
       s.contact.hertz_radius = HertzRadius::curvature;
       all.push_back({"hertz_mindlin of the curvature, rolling, dashpot", s});
     }
+    for (const Law law : {Law::hertz_rough, Law::cones}) {
+      s = disordered(shape, side, m, law, 0.53, 14);
+      s.contact.rolling = true;
+      all.push_back({name(law), s});
+      s.damping.dashpot = Dashpot::restitution;
+      s.damping.restitution = 0.6;
+      s.damping.tangential_ratio = 0.5;
+      all.push_back({name(law), s});
+    }
     s = disordered(shape, side, m, Law::hertz_stiffness, 0.53, 13);
     if (round) s.contact.slip = Slip::full_radius;
     s.damping.dashpot = Dashpot::coefficient;

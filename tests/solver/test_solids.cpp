@@ -17,6 +17,8 @@ using Catch::Matchers::Contains;
 TEST_CASE("Superellipsoids that meet keep momentum, angular momentum and energy") {
   for (const auto& [shape, law, friction] : {std::tuple{ellipsoid, Law::linear_stiffness, 0.5},
                                              {ellipsoid, Law::hertz_mindlin, 0.0},
+                                             {ellipsoid, Law::hertz_rough, 0.0},
+                                             {ellipsoid, Law::cones, 0.0},
                                              {blocky, Law::linear_stiffness, 0.0},
                                              {blocky, Law::hertz_mindlin, 0.5}}) {
     CAPTURE(shape.e);

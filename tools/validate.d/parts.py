@@ -61,6 +61,7 @@ PARTS = [
     Part("superellipsoids", 4, "contacts of PAIRS pairs (20,000; 1e8 take two weeks of a core)",
          "build/release/bin/rvelab-superellipsoids fuzz ${PAIRS:-20000}", targets="rvelab-superellipsoids"),
     Part("solids", 5, "random packings of ellipsoids without friction"),
+    Part("small_strain", 20, "G0 against the pressure by contact law: smooth and rough spheres, cones"),
     Part("thin", 300, "cells sheared to 1e4 at dt > 0, to 300 at dt = 0, and compressed to a Hencky strain of 2"),
     Part("liquefaction", 10, "cycles against the stress ratio"),
     Part("critical_state", 20, "ten dense and ten loose specimens of 1000 discs to gamma = 5"),

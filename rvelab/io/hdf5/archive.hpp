@@ -7,6 +7,8 @@
 // A specimen is shown to an archive by its own description (Described). How one value lies in a dataset: Layout.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -25,6 +27,16 @@ using fields::from_text;
 using fields::Layout;
 using fields::text_of;
 using fields::Textual;
+
+/// Whether a file omits this column of these rows: all are zero, and none is -0, whose sign would be lost.
+template <class Item, class Member>
+bool omits_column(const Field<Item, Member>& column, const std::vector<Item>& rows) {
+  if constexpr (std::is_same_v<Member, double>) {
+    const auto is_zero = [&](const Item& row) { return row.*column.member == 0 && !std::signbit(row.*column.member); };
+    return column.left_out_at_zero && std::all_of(rows.begin(), rows.end(), is_zero);
+  }
+  return false;
+}
 
 /// Shows the fields of a specimen (specimen_fields.hpp) to an archive, each under its path.
 template <class Archive>
@@ -80,6 +92,7 @@ class Writer {
  private:
   template <class Item, class Member>
   void column(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column) {
+    if (omits_column(column, items)) return;
     rows<Member>(
         group + "/" + column.name, items.size(),
         [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units);
@@ -148,6 +161,7 @@ class Reader {
   template <class Item, class Member>
   void column(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column) {
     const std::string name = group + "/" + column.name;
+    if (column.left_out_at_zero && !file_.has(group_ + "/" + name)) return;
     expect_shape<Member>(name, {items.size()});
     rows<Member>(name, items.size(), [&](std::size_t k) -> Member& { return items[k].*column.member; });
   }
@@ -219,7 +233,13 @@ class Digest {
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
     if (fields::left_out_where_empty<Item> && items.empty()) return;
     add(std::uint64_t(items.size()));
-    for (const Item& item : items) (add(item.*columns.member), ...);
+    const auto add_unless = [this](bool left_out, const auto& value) {
+      if (!left_out) add(value);
+    };
+    const auto add_rows = [&](const auto... left_out) {
+      for (const Item& item : items) (add_unless(left_out, item.*columns.member), ...);
+    };
+    add_rows(omits_column(columns, items)...);
   }
 
  private:

@@ -174,14 +174,17 @@ Matrix6 affine_stiffness(const Model& model, const Assembly& assembly) {
 
 Matrix6 affine_viscosity(const Model& model, const Assembly& assembly) {
   if (model.damping.dashpot == Dashpot::none) return Matrix6::Zero();
-  return affine_sum(
-      model, assembly,
-      [&](std::size_t p, const auto& at) -> Coefficients {
-        const double root = root_overlap(at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
-        const double c = dashpot_now(model, assembly.pairs.cn[p], root);
-        return {c, model.damping.tangential_ratio * c};
-      },
-      false);
+  return with_force(model, [&](auto force) {
+    return affine_sum(
+        model, assembly,
+        [&](std::size_t p, const auto& at) -> Coefficients {
+          const double c = stiffness_of<decltype(force)>(model, parameters_of(model, assembly.pairs, p), at.overlap,
+                                                         hertz_radius_ratio(model, assembly.pairs, p, at))
+                               .dashpot;
+          return {c, model.damping.tangential_ratio * c};
+        },
+        false);
+  });
 }
 
 }  // namespace rvelab

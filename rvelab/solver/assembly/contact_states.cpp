@@ -23,7 +23,9 @@ void set_elastic(const Model& model, const PairTable& pairs, std::size_t p, doub
     c.tangential_stiffness = k.tangential;
     c.rolling_stiffness = k.rolling;
     c.pressing_force = Force::pressing_force(c.normal_force, q.law_constant);
-    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, root_overlap(c.overlap, radius_ratio), q.law_constant);
+    c.stiffness_growth = Force::stiffness_growth(c.overlap, q.law_constant);
+    c.elastic_energy =
+        Force::normal_energy(q.kn, c.overlap, root_of<Force>(q, c.overlap, radius_ratio), q.law_constant);
   });
   double spring = 0;
   for (int k = 0; k < model.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];

@@ -57,26 +57,30 @@ inline RadiusRatios hertz_radius_ratios(const Model& model, const PairTable& pai
           hertz_radius_ratio(model.radius[i], at_i.inner, model.radius[j], at_j.inner)};
 }
 
-/// What laws take for sqrt(overlap), m^0.5.
-inline double root_overlap(double overlap, double radius_ratio) { return std::sqrt(overlap * radius_ratio); }
+/// What the stiffnesses of a law go with, m^0.5: sqrt(overlap) of most.
+template <class Force>
+double root_of(const PairParameters& q, double overlap, double radius_ratio) {
+  return Force::root(overlap * radius_ratio, q.law_constant);
+}
 
-/// c_n at an overlap whose square root is `root`, N s/m.
-inline double dashpot_now(const Model& model, double cn, double root) {
+/// c_n at an overlap and its root, N s/m.
+template <class Force>
+double dashpot_now(const Model& model, const PairParameters& q, double overlap, double root) {
   const double power = dashpot_power(model.contact.law, model.damping.dashpot);
-  return cn * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
+  return Force::dashpot(q.cn, overlap, root, q.law_constant, int(4 * power));
 }
 
 /// `Force`: that of the specimen's law (contact/laws.hpp). The overlap is > 0, m.
 template <class Force>
 ContactStiffness stiffness_of(const Model& model, const PairParameters& q, double overlap, double radius_ratio = 1) {
   const bool dashpot = model.damping.dashpot != Dashpot::none;
-  const double root = Force::needs_root_overlap || dashpot ? root_overlap(overlap, radius_ratio) : 0;
+  const double root = Force::needs_root_overlap || dashpot ? root_of<Force>(q, overlap, radius_ratio) : 0;
   return {Force::normal_stiffness(q.kn, root), Force::tangential_stiffness(q.kt, root),
-          Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now(model, q.cn, root) : 0};
+          Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now<Force>(model, q, overlap, root) : 0};
 }
 template <class Force>
 double normal_force_of(const PairParameters& q, double overlap, double radius_ratio = 1) {
-  const double root = Force::needs_root_overlap ? root_overlap(overlap, radius_ratio) : 0;
+  const double root = Force::needs_root_overlap ? root_of<Force>(q, overlap, radius_ratio) : 0;
   return Force::normal_force(q.kn, overlap, root, q.law_constant);
 }
 

@@ -23,6 +23,7 @@ struct ContactState {
   double normal_stiffness = 0;      ///< d f_n/d overlap now, N/m
   double tangential_stiffness = 0;  ///< k_t now, N/m
   double rolling_stiffness = 0;     ///< k_r now, N m
+  double stiffness_growth = 0;      ///< d ln k_t/d overlap, 1/m, where the law carries f_t by k_t (unload_rescale)
   double friction = 0;              ///< mu
   double moment_cap = 0;            ///< |M| <= moment_cap pressing_force, m
   double elastic_energy = 0;        ///< J, normal + tangential + rolling

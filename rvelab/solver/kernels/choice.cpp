@@ -77,8 +77,8 @@ Kernels kernels_for(const KernelConfiguration& key) {
   set.of_bodies(key, kernels);
   if (kernels.pairs == nullptr)
     throw InputError(
-        "this build has no kernels of superellipsoids, dashpots, the laws hertz_stiffness and linear_adhesive and the "
-        "slip of other codes; use the program");
+        "this build has no kernels of superellipsoids, dashpots, laws other than linear, linear_stiffness and "
+        "hertz_mindlin, and the slip of other codes; use the program");
   kernels.instruction_set = set.name;
   return kernels;
 }

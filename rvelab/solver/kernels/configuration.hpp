@@ -79,7 +79,7 @@ struct PairArrays {
   const double* cn = nullptr;                             ///< with a dashpot
   double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
   double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
-  double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
+  double* root_overlap = nullptr;                         ///< laws that carry what k_t went with
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< where the kernels read them by pairs
   double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0},
                             ///< superellipsoids {fx, fy, fz, 0, T_j, 0}

@@ -37,16 +37,16 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
     const V overlap = contact.overlap, slip_rate = contact.slip_rate;
     const auto touching = overlap > 0.0;
     V root = zero, law_constant = zero;
-    if constexpr (T::Curvature)
-      root = square_root(touching ? overlap * contact.radius_ratio : zero);
-    else if constexpr (Law::needs_root_overlap || T::Dashpot)
-      root = square_root(touching ? overlap : zero);
     if constexpr (Law::has_law_constant) law_constant = load_as<V>(p.law_constant + at);
+    if constexpr (T::Curvature)
+      root = Law::root(touching ? overlap * contact.radius_ratio : zero, law_constant);
+    else if constexpr (Law::needs_root_overlap || T::Dashpot)
+      root = Law::root(touching ? overlap : zero, law_constant);
 
     V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, law_constant);
     [[maybe_unused]] V c_normal = zero;
     if constexpr (T::Dashpot) {
-      c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters);
+      c_normal = Law::dashpot(load_as<V>(p.cn + at), overlap, root, law_constant, c.dashpot_quarters);
       normal = normal - c_normal * contact.opening;
       if (c.no_tension) normal = without_tension<Law>(normal, law_constant);
     }
@@ -76,7 +76,7 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
       if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
-          const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
+          const double last_kt = Law::stores_root_overlap ? Law::tangential_stiffness(p.kt[at], last_root) : kt;
           book_spring<Law::stores_root_overlap>(
               SpringStep<V>{before, started, trial, tangential, increment, kt, last_kt}, touching,
               dissipation->friction, dissipation->law_loss);
@@ -103,7 +103,7 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
       store_as(p.moment[0] + at, moment);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
-          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          const double last_kr = Law::stores_root_overlap ? Law::tangential_stiffness(p.kr[at], last_root) : kr;
           book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, moment, increment, kr, last_kr},
                                                 touching, dissipation->rolling, dissipation->law_loss);
         }

@@ -46,10 +46,12 @@ inline __attribute__((always_inline)) void space_motion(const StepConstants& c, 
     V root = zero;
     if constexpr (Law::needs_root_overlap || T::Dashpot) {
       const V overlap = Shape::template overlap<V>(k, s);
+      V law_constant = zero;
+      if constexpr (Law::has_law_constant) law_constant = load_as<V>(p.law_constant + at);
       if constexpr (T::Curvature)
-        root = square_root((overlap > 0.0) ? overlap * Shape::template radius_ratio<V>(p, at, k, s) : zero);
+        root = Law::root((overlap > 0.0) ? overlap * Shape::template radius_ratio<V>(p, at, k, s) : zero, law_constant);
       else
-        root = square_root((overlap > 0.0) ? overlap : zero);
+        root = Law::root((overlap > 0.0) ? overlap : zero, law_constant);
       store_as(s.root.at + k, root);
     }
     V mean_twist = zero;
@@ -99,7 +101,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
     V c_normal = zero, opening = zero;
     if constexpr (T::Dashpot) {
       opening = load_as<V>(s.opening.at + k);
-      c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters);
+      c_normal = Law::dashpot(load_as<V>(p.cn + at), overlap, root, law_constant, c.dashpot_quarters);
       normal = normal - c_normal * opening;
       if (c.no_tension) normal = without_tension<Law>(normal, law_constant);
     }
@@ -119,7 +121,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
-          const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
+          const double last_kt = Law::stores_root_overlap ? Law::tangential_stiffness(p.kt[at], last_root) : kt;
           book_spring<Law::stores_root_overlap>(
               SpringStep<Triple<V>>{before, carried, trial, tangential, times(kt * c.dt, slip_rate), kt, last_kt},
               touching, dissipation->friction, dissipation->law_loss);
@@ -145,7 +147,7 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       store_vec(p.moment, at, moment);
       if constexpr (T::Ledger)
         if (dissipation != nullptr) {
-          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          const double last_kr = Law::stores_root_overlap ? Law::tangential_stiffness(p.kr[at], last_root) : kr;
           book_spring<Law::stores_root_overlap>(
               SpringStep<Triple<V>>{before, carried, trial, moment, times(kr * c.dt, bending), kr, last_kr}, touching,
               dissipation->rolling, dissipation->law_loss);

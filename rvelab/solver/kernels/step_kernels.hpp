@@ -21,6 +21,9 @@
 namespace rvelab {
 namespace {
 
+template <class One, class... Several>
+constexpr bool is_any_of = (std::is_same_v<One, Several> || ...);
+
 /// A build whose weight counts (tools/cmake/wasm.cmake) has kernels of quasi-static loading of discs, ellipses and
 /// spheres, linear and Hertzian, without dashpots and interactions. The rest is refused where its kernel is asked for.
 #ifdef RVELAB_FEWER_KERNELS
@@ -29,8 +32,7 @@ constexpr bool fewer_kernels = true;
 constexpr bool fewer_kernels = false;
 #endif
 template <class Law>
-constexpr bool has_kernels =
-    !fewer_kernels || (!std::is_same_v<Law, LinearAdhesiveLaw> && !std::is_same_v<Law, HertzStiffnessLaw>);
+constexpr bool has_kernels = !fewer_kernels || is_any_of<Law, LinearLaw, LinearStiffnessLaw, HertzMindlinLaw>;
 
 /// `Pairs`: the geometry of a shape, like Discs.
 template <class Pairs, class Law, class T>
@@ -50,11 +52,11 @@ constexpr GrainKernel grain_kernel() {
 }
 
 /// Which kernels there are in more than one lane; where there are none the scalar reference does the work (README.md
-/// says for how much). The slip of other codes serves comparison, and no recipe gives these two laws to grains that are
-/// not round.
+/// says for how much). The slip of other codes serves comparison, and no recipe gives the other laws to grains that are
+/// not round; those that stiffen as sands do may be asked of superellipsoids.
 template <class Pairs, class Force>
-constexpr bool has_lanes = Pairs::By::round ||
-                           (!std::is_same_v<Force, LinearAdhesiveForce> && !std::is_same_v<Force, HertzStiffnessForce>);
+constexpr bool has_lanes = Pairs::By::round || is_any_of<Force, LinearForce, HertzMindlinForce> ||
+                           (Pairs::By::rigid && is_any_of<Force, RoughForce, ConesForce>);
 
 template <class Pairs, int W, bool Advance, class Law, bool Rolling, bool Dashpot>
 PairKernel by_slip(const KernelConfiguration& key) {

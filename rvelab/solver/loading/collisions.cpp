@@ -26,7 +26,7 @@ struct PairExtremes {
   double stiffness = 0;              ///< largest Impact::measure
   double impact = 0;                 ///< the same of the speed alone, without what a spring already holds
   double least_kn = std::numeric_limits<double>::infinity();
-  /// Dashpots, by the power of the overlap in them: largest c/m* (0), c/sqrt(m* k) (1/4), c/k (1/2).
+  /// Dashpots: largest c/m* (of power 0), c/sqrt(m* k) (restitution), c/k (viscoelastic).
   double damping = 0;
   double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap that the increment makes
   bool deep = false, beyond = false;
@@ -74,6 +74,8 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
   const bool curvature = model.radius_from_curvature(), dashpot = model.damping.dashpot != Dashpot::none;
   const double power = dashpot_power(model.contact.law, model.damping.dashpot),
                allowed = model.options.max_overlap_ratio;
+  const bool viscoelastic = model.damping.dashpot == Dashpot::viscoelastic;
+  const double* constants = assembly.pairs.law_constant.empty() ? nullptr : assembly.pairs.law_constant.data();
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(order[q]), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
     const auto geometry = pair.within(p, known_gap);
@@ -108,18 +110,19 @@ PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPl
     }
     found.approach += 0.5 * mass * opening * opening;
     const double pressed = std::max(0.0, overlap), ratio = k / mass;
-    found.elastic += Impact::spring_energy(k, pressed);
+    const double own = constants == nullptr ? 0 : constants[p];
+    found.elastic += Impact::spring_energy(k, pressed, own);
     // A Hertz collision under way has given part of its speed to the spring.
-    const double speed = opening * opening + Impact::held_speed_squared(ratio, pressed);
+    const double speed = opening * opening + Impact::held_speed_squared(ratio, pressed, own);
     found.stiffness = std::max(found.stiffness, Impact::measure(ratio, speed));
     if (Impact::stiffens) found.impact = std::max(found.impact, Impact::measure(ratio, opening * opening));
     if (dashpot) {
-      const double over = power == 0 ? mass : (power == 0.5 ? k : std::sqrt(mass * k));
+      const double over = power == 0 ? mass : (viscoelastic ? k : std::sqrt(mass * k));
       found.damping = std::max(found.damping, assembly.pairs.cn[p] / over);
     }
     if (travel - gap > limit)
       found.deep =
-          found.deep || std::min(travel, Impact::reach(softest, mass, std::abs(opening))) + pressed > 0.9 * limit;
+          found.deep || std::min(travel, Impact::reach(softest, mass, std::abs(opening), own)) + pressed > 0.9 * limit;
   }
   found.beyond |= !std::isfinite(found.elastic + found.approach);
   return found;
@@ -208,20 +211,25 @@ GrainMotion motion_of(const Model& model, const Assembly& assembly, const Stiffn
 /// No more than the row sum of any grain with contacts, N/m (inertia.cpp: its stiffest listed pair counts at a quarter
 /// of p0's overlap at least); 0: not known.
 double least_row_sum(const Model& model, const Assembly& assembly, double least_kn) {
-  if (model.radius_from_curvature()) return 0;
+  if (model.radius_from_curvature() || with_force(model, [](auto force) { return decltype(force)::root_has_constant; }))
+    return 0;
   const double root = std::sqrt(0.25 * assembly.state.reference.overlap);
   return 2 * with_force(model, [&](auto force) { return decltype(force)::normal_stiffness(least_kn, root); });
 }
 
 /// Longest sub-step that meets the restitution, s, of collisions of frequency omega.
+template <class Impact>
 double dashpot_step(const Model& model, double damping, double omega) {
-  // At the overlap where omega^2 = 3/2 (k/m*) sqrt(delta).
+  // At the overlap where omega^2 = n (k/m*) delta^(n - 1), n the exponent of the spring.
   const double power = dashpot_power(model.contact.law, model.damping.dashpot);
+  const bool viscoelastic = model.damping.dashpot == Dashpot::viscoelastic, one_ratio = power > 0 && !viscoelastic;
   double gamma = damping;
-  if (power == 0.25) gamma = damping * omega / std::sqrt(1.5);
-  if (power == 0.5) gamma = damping * omega * omega / 1.5;
-  // Power 1/4 keeps one restitution at all speeds: ln e = -pi zeta / sqrt(1 - zeta^2), zeta = c / sqrt(5 m* k).
-  const double zeta = std::min(0.85, (power == 0.25 ? std::sqrt(0.3) : 0.5) * gamma / omega);
+  if (one_ratio) gamma = damping * omega / std::sqrt(Impact::exponent);
+  if (viscoelastic) gamma = damping * omega * omega / Impact::exponent;
+  // Power (n - 1)/2 keeps one restitution at all speeds: ln e = -pi zeta / sqrt(1 - zeta^2), zeta = c / (factor sqrt(m*
+  // k)).
+  const double share = one_ratio ? std::sqrt(Impact::exponent / Impact::factor_squared) : 0.5;
+  const double zeta = std::min(0.85, share * gamma / omega);
   const double half_logarithm = 0.5 * pi * zeta / std::sqrt(1 - zeta * zeta);
   return restitution_error / (gamma * (half_logarithm + (power < 0.5 ? 1 : 0)));
 }
@@ -251,7 +259,8 @@ Collisions limited(const Model& model, const Assembly& assembly, const PairExtre
   found.step = std::min(found.step, pi / steps / omega / share);
   // A few fast grains among many at rest: half of the step at which the stiffest of their impacts would be unstable.
   if (all.impact > 0) found.step = std::min(found.step, 1 / Impact::frequency(all.impact));
-  if (all.damping > 0) found.step = std::min(found.step, dashpot_step(model, all.damping, omega) / (share * share));
+  if (all.damping > 0)
+    found.step = std::min(found.step, dashpot_step<Impact>(model, all.damping, omega) / (share * share));
   return found;
 }
 

@@ -32,14 +32,16 @@ void let_go_of_springs(const Model& model, const Buffer& before, Assembly& assem
   for (const std::int32_t row : pairs.order) {
     const auto p = std::size_t(row);
     if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
-    const double root = model.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
+    const double last = with_force(model, [&](auto force) {
+      using Force = decltype(force);
+      return Force::tangential_stiffness(before[p], Force::stores_root_overlap ? pairs.root_overlap[p] : 1.0);
+    });
     double squared = 0;
     for (int k = 0; k < model.tangential_components(); ++k) {
       squared += pairs.tangential[k][p] * pairs.tangential[k][p];
       pairs.tangential[k][p] = 0;
     }
-    if (model.options.energy_balance && squared > 0)
-      assembly.state.energy_balance.law_loss += 0.5 * squared / (before[p] * root);
+    if (model.options.energy_balance && squared > 0) assembly.state.energy_balance.law_loss += 0.5 * squared / last;
   }
 }
 
@@ -161,6 +163,9 @@ void State::set_materials(const std::vector<Material>& materials) {
   const Buffer before = assembly.pairs.kt;
   set_pair_parameters(model_, assembly.pairs);
   let_go_of_springs(model_, before, assembly);
+  // Stored roots are of the roughness so far.
+  if (with_force(model_, [](auto force) { return decltype(force)::root_has_constant; }))
+    std::fill(assembly.pairs.root_overlap.begin(), assembly.pairs.root_overlap.end(), 0.0);
   set_typical_answers(model_);
   assembly.state.masses = {};
   evaluate_forces(model_, assembly);
