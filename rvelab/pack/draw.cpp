@@ -112,6 +112,7 @@ Rve agitated_and_compressed(const Recipe& recipe, const Rve& prepared, const Str
     if (!search.met() && !search.given_up()) continue;
     result.compressed = search.made();
     result.contacts_in_vain = search.in_vain();
+    result.next_agitation = search.next();
     return rve;
   }
 }

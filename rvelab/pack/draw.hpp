@@ -22,6 +22,7 @@ struct Draw {
   bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: given up, since the void ratio
                           ///< is too far from the target
   std::string why_not;    ///< how far the grains were from rest, where they were not at rest
+  Agitation next_agitation;            ///< by which the next draw at this density would begin
   bool contacts_in_vain = false;       ///< no compression had the contacts of the target
   std::vector<Compressed> compressed;  ///< of agitated grains: each trial, the last one is the specimen
   Specimen specimen;                   ///< of a draw at rest

@@ -135,19 +135,18 @@ class Search {
     return in_vain >= 3;
   }
 
-  /// The agitation by which the known draw of the nearest friction had its contacts.
+  /// What the known draw of the nearest friction, the last of such, learnt.
   Agitation first_agitation(double friction, std::size_t known) const {
-    Agitation best{recipe_.preparation.expansion.value_or(Agitation{}.expansion), 0};
+    Agitation first{recipe_.preparation.expansion.value_or(Agitation{}.expansion), 0};
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < known; ++k) {
       const Draw& draw = draws_[k];
-      if (!failures_[k].empty() || draw.compressed.empty() || !draw.compressed.back().meets(recipe_.contacts)) continue;
       const double distance = std::abs(coordinate_of(draw.friction) - coordinate_of(friction));
-      if (distance > nearest) continue;
+      if (!failures_[k].empty() || draw.compressed.empty() || distance > nearest) continue;
       nearest = distance;
-      best = draw.compressed.back().by;
+      first = draw.next_agitation;
     }
-    return best;
+    return first;
   }
 
   double next_coordinate(std::size_t number, std::size_t known) {

@@ -217,8 +217,9 @@ def strengths():
             path = pack(recipe, f"{name}_{seed}", "target.relative_density=0.85", f"pack.seed={seed}", *target)[0]
             test = once(work / f"sheared_{name}_{seed}.h5", "run", "triaxial", "--specimen", path,
                         *sets("stage.compression.to_strain=0.3"))
-            rows = records(test, "q_Pa", "strain", last=True)
-            q, strain = rows["q_Pa"] / 1e3, rows["strain"] * 100
+            rows = records(test, "stress_Pa", "strain", last=True)
+            stress, strain = rows["stress_Pa"] / 1e3, rows["strain"] * 100
+            q = (stress[:, 0, 0] + stress[:, 1, 1]) / 2 - stress[:, 2, 2]
             top = q.argmax()
             half = strain[(q >= q[top] / 2).argmax()]
             found.setdefault(name, []).append([q[top] / 2 / half / 10, q[top], strain[top], q[strain > 25].mean()])
