@@ -14,6 +14,7 @@ constexpr double overlap_of_collision = 0.1;
 /// Distance that a grain covers, over that gap. Of 500 spheres that had 6.48 contacts a grain, expanded by 0.8 %, those
 /// that bear have 5.5, 5.15, 5.0, 5.0 at the end after 3, 10, 30, 100 gaps. Stiff grains forget their contacts at any
 /// expansion: numbers between are those of shorter agitations, in proportion to the expansion up to this strain.
+/// Random moves without overlaps leave 5.4 of them and shaking at a rate 5.2 (tools/validate preparation).
 constexpr double longest_distance = 30, expansion_of_longest = 5e-3;
 /// Sub-steps of a collision: with 20 instead of 8 no number of contacts differs by more than its scatter.
 constexpr long steps_of_collision = 8;

@@ -108,7 +108,9 @@ Rve agitated_and_compressed(const Recipe& recipe, const Rve& prepared, const Str
     rve =
         steered(pressed(recipe, rve, watch, press_strains(recipe, by.strain_difference), &deformation), recipe, watch);
     consolidate(rve, goal, nearly, deformation, &left);
-    search.add(compressed_state(recipe, by, rve.network()));
+    const Network network = rve.network();
+    if (network.contacts.empty()) throw IncrementFailed("packing: the agitated grains came apart under the stress");
+    search.add(compressed_state(recipe, by, network));
     if (!search.met() && !search.given_up()) continue;
     result.compressed = search.made();
     result.contacts_in_vain = search.in_vain();
