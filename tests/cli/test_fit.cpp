@@ -247,7 +247,7 @@ TEST_CASE("Features of tests with known grains are found again, with a map of de
   // What it takes is told after the first sets, long before the end.
   here.shell(std::string("'") + RVELAB_PROGRAM +
              "' fit soil.toml --tests 90000 --threads 1 >cost.out 2>cost.err & fit=$!\n"
-             "for k in $(seq 600); do grep -q ' about ' cost.err && break; sleep 0.1; done; kill $fit; wait $fit");
+             "for k in $(seq 600); do grep -q 'a set took' cost.err && break; sleep 0.1; done; kill $fit; wait $fit");
   CHECK_THAT(
       bytes_of(here / "cost.err"),
       Contains("90000 sets of parameters x 1 test, each on one of 2 specimens, then 4 predictions x 2 tests: about ") &&
