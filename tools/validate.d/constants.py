@@ -44,6 +44,7 @@ ALONE = {
     "longest_start": ("longest_start=0", ""),
     "firm_factor_of_start, isostatic_factor_of_start": ("firm_factor_of_start=0.3,isostatic_factor_of_start=1.7", "increments after the friction was lowered (tests/solver)"),
     "start_margin, largest_target_of_start": ("start_margin=2,largest_target_of_start=2e-3", "low friction (tests/solver)"),
+    "longest_elastic_strain": ("longest_elastic_strain=1", "starts of spheres that are no equilibrium (tests/adapters)"),
     "least_elastic_ratio": ("least_elastic_ratio=0", "starts in flow (tests/solver)"),
     "most_steps_before_turn": ("most_steps_before_turn=0", ""),
     "slow_share": ("slow_share=0", ""),

@@ -97,7 +97,8 @@ StartUp start_up_of(State& state, const Matrix3& change, double strain, double e
   if (strain > overlap && has_interactions(state.assembly()) && state.out_of_balance().touching == 0)
     overlap = strain / 3;
   // Stiff grains among soft ones answer as slowly as these: at 1 : 10,000 a start of five sub-steps left u = 0.5.
-  const bool elastic = state.model().alike_contacts && control.stiffness_ratio >= least_elastic_ratio;
+  const bool elastic = state.model().alike_contacts && control.stiffness_ratio >= least_elastic_ratio &&
+                       strain <= longest_elastic_strain * overlap;
   if (elastic && state.last_step().rate.isZero(0) && !turned_back) {
     const double factor = error_factor_of_start(state);
     const double target = target_ratio_of_start(state, elastic_change, factor);
