@@ -135,21 +135,24 @@ TEST_CASE("a team whose meetings cost more than the work goes on alone for a whi
   // A thread that is off its core for 20 ms costs the caller as much, who works alone for 20 times as long after it: in
   // short calls, for a long one is shared all the same.
   Workers workers(2);
-  workers.sharing = Sharing::always;
-  auto begin = Clock::now();
-  do {
-    begin = Clock::now();
-    REQUIRE(another_comes(workers, milliseconds(1000), milliseconds(20)));
-  } while (Clock::now() - begin > milliseconds(60));  // it came so late that the meeting cost little beside that
-  workers.sharing = Sharing::measured;
-  const auto end = Clock::now() + milliseconds(200);
   int alone = 0;
-  while (Clock::now() < end) {
-    begin = Clock::now();
-    const bool came = another_comes(workers, microseconds(100), milliseconds(0));
-    if (Clock::now() - begin > microseconds(1900)) continue;
-    CHECK(!came);
-    ++alone;
+  // Again where other work on the machine left no short call in that time.
+  for (int attempt = 0; alone == 0 && attempt < 10; ++attempt) {
+    workers.sharing = Sharing::always;
+    auto begin = Clock::now();
+    do {
+      begin = Clock::now();
+      REQUIRE(another_comes(workers, milliseconds(1000), milliseconds(20)));
+    } while (Clock::now() - begin > milliseconds(60));  // it came so late that the meeting cost little beside that
+    workers.sharing = Sharing::measured;
+    const auto end = Clock::now() + milliseconds(200);
+    while (Clock::now() < end) {
+      begin = Clock::now();
+      const bool came = another_comes(workers, microseconds(100), milliseconds(0));
+      if (Clock::now() - begin > microseconds(1900)) continue;
+      CHECK(!came);
+      ++alone;
+    }
   }
   CHECK(alone > 0);
 }
