@@ -1,6 +1,6 @@
-"""tools/validate fit_features: Karlsruhe fine sand fitted by features of three tests with five parameters, the other tests predicted.
+"""tools/validate fit_features fit_agitated: Karlsruhe fine sand fitted by features of three tests, the other tests predicted.
 
-    fit_features.py RVELAB WORK RESULTS
+    fit_features.py RVELAB WORK RESULTS FIT
 
 Parameters, the map of densities, and each feature as measured (scatter of laboratories), fitted and predicted. Then, of fitted
 and predicted tests each, how many features lie within one and two errors."""
@@ -10,11 +10,11 @@ import json
 import re
 
 import harness
-from harness import once, work
+from harness import once, words, work
 
 
 def main():
-    folder = once(work / "K", "fit", "karlsruhe_features", resume=True)
+    folder = once(work / "K", "fit", words[0], resume=True)
     with open(folder / "features.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     fit = json.loads((folder / "fit.json").read_text())
@@ -33,8 +33,8 @@ def main():
         # Stresses in kPa, moduli in MPa, strains in per cent.
         name = row["feature"]
         factor = 1e-6 if name == "E50_Pa" else 1e-3 if name.endswith("_Pa") else 100
-        words = re.sub("_Pa$", "", name) + (", MPa" if name == "E50_Pa" else ", kPa" if name.endswith("_Pa") else ", %")
-        print(f"{row['test']:<8} {role:<10} {words:<30} " + " ".join(
+        label = re.sub("_Pa$", "", name) + (", MPa" if name == "E50_Pa" else ", kPa" if name.endswith("_Pa") else ", %")
+        print(f"{row['test']:<8} {role:<10} {label:<30} " + " ".join(
             f"{factor * number:>{width}.3g}" for number, width in ((value, 10), (error, 9), (mean, 10), (deviation, 9)))
             + f" {off[role][-1]:>10.1f}")
     for role, all_of in off.items():
