@@ -17,8 +17,8 @@ double anisotropy_by_difference(int dimension) { return dimension == 2 ? 0.1 : 0
 /// Compressions for one target, and for both: of 500 grains one in two or three has each within its tolerance.
 constexpr std::size_t most_compressions = 8, most_compressions_of_both = 16;
 /// The void ratio rises by this where a contact a grain is lost by a wider expansion (500 spheres: 0.006 above five
-/// contacts, 0.02 below). A draw that will miss the void ratio of the target by more than that is uncertain, and its
-/// scatter, is given up, whatever its contacts.
+/// contacts, 0.02 below); its scatter from one compression to the next. A draw that will miss the void ratio of the
+/// target by more than both is given up, whatever its contacts.
 constexpr double void_ratio_by_contacts = 0.008, scatter_of_void_ratio = 1e-3;
 
 std::string range_of(const std::vector<Compressed>& made, double Compressed::*value) {
