@@ -109,6 +109,7 @@ Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool 
 bool relaxes_alike(const SolverOptions& options, const CachedRelaxation& made, double strain, bool reverses) {
   const std::optional<double> allowed = allowed_before(options, made, strain, reverses);
   if (!allowed) return made.parts() == 0;
+  if (made.error.empty()) return false;  // the increment that left it needed no relaxation and measured no error
   std::size_t parts = 0;
   while (parts < made.parts() && goes_on(made, parts, *allowed)) ++parts;
   return parts == made.parts() && !goes_on(made, parts, *allowed);
