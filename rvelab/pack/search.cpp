@@ -275,18 +275,22 @@ Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   check_recipe(recipe);
   if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
   Draw made;
-  try {
-    made = draw(recipe, 1, only_friction(recipe), watch.of(1));
-  } catch (const NotAtRest& failure) {
-    throw IncrementFailed("packing: " + std::string(failure.what()) + remedy_of_unrest);
-  }
-  if (!made.compressed.empty() && !made.compressed.back().meets(recipe.contacts))
-    throw not_found(recipe, {made}, 0, End::contacts_out_of_reach);
+  const auto meets = [&] { return made.compressed.empty() || made.compressed.back().meets(recipe.contacts); };
+  long number = 0;
+  do {  // again where the last of the way to rest changed contacts that had met the target
+    ++number;
+    try {
+      made = draw(recipe, number, only_friction(recipe), watch.of(number));
+    } catch (const NotAtRest& failure) {
+      throw IncrementFailed("packing: " + std::string(failure.what()) + remedy_of_unrest);
+    }
+  } while (!meets() && !made.contacts_in_vain && number < recipe.preparation.max_draws);
+  if (!meets()) throw not_found(recipe, {made}, 0, End::contacts_out_of_reach);
   if (!made.at_rest)
     throw IncrementFailed("packing: the grains did not come to rest at the target stress" +
                           (made.why_not.empty() ? "" : ": " + made.why_not) + remedy_of_unrest);
-  if (watch.on_draw) watch.on_draw(1, made.void_ratio);
-  Packing packing{std::move(made.specimen), 1, made.friction, made.void_ratio};
+  if (watch.on_draw) watch.on_draw(number, made.void_ratio);
+  Packing packing{std::move(made.specimen), number, made.friction, made.void_ratio};
   if (!made.compressed.empty()) packing.agitation = made.compressed.back().by;
   return packing;
 }
