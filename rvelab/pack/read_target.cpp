@@ -73,8 +73,9 @@ void read_stress(TableReader& reader, RecipeFile& file) {
 }
 
 /// The void ratio of a relative density between the limits of the recipe.
-void read_relative_density(TableReader& reader, Recipe& recipe) {
-  const auto density =
+void read_relative_density(TableReader& reader, RecipeFile& file) {
+  Recipe& recipe = file.recipe;
+  const auto density = file.relative_density =
       reader.optional_number("relative_density", "1", {-1, 2},
                              "D = (e_max - e)/(e_max - e_min) of the finished specimen, in place of void_ratio");
   const auto e_min = reader.optional_number(
@@ -93,6 +94,29 @@ void read_relative_density(TableReader& reader, Recipe& recipe) {
     return;
   }
   recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
+}
+
+/// The expansion of agitated grains, by the relative density where it is given at both limits: its logarithm is linear
+/// between them.
+void read_expansion(TableReader& reader, RecipeFile& file) {
+  Preparation& p = file.recipe.preparation;
+  p.expansion = reader.optional_number(
+      "expansion", "1", {0, largest_expansion, true},
+      "strain of the cell along each axis, after which the grains collide without friction and are compressed with "
+      "their own, as in a shaken sand; the larger, the fewer contacts",
+      "(searched for target.coordination_number; else the grains are not agitated)");
+  const auto at_e_max = reader.optional_number(
+      "expansion_at_e_max", "1", {0, largest_expansion, true},
+      "the same at target.relative_density = 0; preparation.expansion is then that at 1, and between them the "
+      "logarithm is linear",
+      "(preparation.expansion at every density)");
+  if (!at_e_max) return;
+  if (!p.expansion)
+    reader.mistake("expansion_at_e_max", "needs preparation.expansion, that at a relative density of 1; add it");
+  else if (!file.relative_density)
+    reader.mistake("expansion_at_e_max", "needs target.relative_density, by which it is weighted; add it");
+  else
+    p.expansion = std::min(largest_expansion, *at_e_max * std::pow(*p.expansion / *at_e_max, *file.relative_density));
 }
 
 /// Number of contacts and fabric.
@@ -133,7 +157,7 @@ void read_target(keys::TableReader& reader, RecipeFile& file) {
   if (porosity && recipe.void_ratio)
     reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
   if (porosity) recipe.void_ratio = *porosity / (1 - *porosity);
-  read_relative_density(reader, recipe);
+  read_relative_density(reader, file);
   bool stress_named = false;
   for (const char* name : {"pressure_Pa", "pressures_Pa", "stress_Pa"})
     stress_named = stress_named || reader.has(name) || reader.has_in_another_unit(name);
@@ -166,11 +190,7 @@ void read_preparation(keys::TableReader& reader, RecipeFile& file) {
   p.growth_void_ratio = reader.optional_number("growth_void_ratio", "1", positive,
                                                "method = growth: void ratio of the cell once the grains have grown",
                                                "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)");
-  p.expansion = reader.optional_number(
-      "expansion", "1", {0, largest_expansion, true},
-      "strain of the cell along each axis, after which the grains collide without friction and are compressed with "
-      "their own, as in a shaken sand; the larger, the fewer contacts",
-      "(searched for target.coordination_number; else the grains are not agitated)");
+  read_expansion(reader, file);
   p.strain_difference = reader.optional_number(
       "strain_difference", "1", {-largest_strain_difference, largest_strain_difference},
       "of that compression: strain along target.fabric_direction less that across it, over the larger; positive makes "
