@@ -1,6 +1,6 @@
 // Mohr circles and what soil mechanics reads off them: peak, friction angle, cohesion, bearing capacity factors.
 //
-// Pure functions of records; this room's calibrate.hpp runs the tests. Everything here is compression positive and in
+// Pure functions of records; this module's calibrate.hpp runs the tests. Everything here is compression positive and in
 // Pa, angles in degrees. s = (sigma_1 + sigma_3)/2, t = (sigma_1 - sigma_3)/2. What cannot be had from the records
 // given (no record in a strain range, a minor stress in tension beyond s) is NaN.
 #pragma once

@@ -1,7 +1,7 @@
 // Contact parameters as a user states them: materials, law, slip convention, rolling, damping; and what a pair of
 // grains makes of them. Which law does what stands in the law's own file; here are names, units, ranges and mixing.
 //
-// This room knows two grains at a time: no list, no cell, no step loop.
+// This module knows two grains at a time: no list, no cell, no step loop.
 #pragma once
 
 #include <cstddef>

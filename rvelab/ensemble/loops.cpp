@@ -10,7 +10,7 @@ namespace {
 
 /// Shear strain and stress of a record, both growing with the driving strain; Pa.
 struct Shear {
-  double driving = 0;  ///< strain that the stage drives: it turns where it is told to, lateral strains may waver
+  double driving = 0;  ///< strain that the stage drives: it turns where it is prescribed, lateral strains may waver
   double gamma = 0, tau = 0;
 };
 

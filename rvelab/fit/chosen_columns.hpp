@@ -20,8 +20,8 @@ struct Chosen {
 /// The header is known by the columns that are asked for (Selection::columns), else by an abscissa and a curve.
 KnownHeader known_header(const std::vector<std::string>& columns);
 
-/// The abscissa, then the curves, with the columns of their errors; the table is told of them. InputError for one that
-/// is missing, not known, without a unit or there twice.
+/// The abscissa, then the curves, with the columns of their errors; the table keeps these alone. InputError for one
+/// that is missing, not known, without a unit or there twice.
 std::vector<Chosen> chosen_columns(MeasuredTable& table, const std::vector<std::string>& asked);
 
 }  // namespace rvelab::fit

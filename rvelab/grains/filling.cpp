@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Points of the surface, for medial balls and for what is told of distances.
+/// Points of the surface, for medial balls and for the distances that are reported.
 constexpr std::size_t point_count = 2000;
 /// Halvings of the distance that counts as near: to a thousandth of the radius.
 constexpr int halvings = 10;

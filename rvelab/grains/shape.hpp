@@ -1,4 +1,4 @@
-// The shapes there are. A new shape is a file of its own, like its neighbours, and a line here. This room knows one
+// The shapes there are. A new shape is a file of its own, like its neighbours, and a line here. This module knows one
 // grain at a time: no contact, no cell.
 #pragma once
 

@@ -10,7 +10,7 @@
 // gap up to which one may form, 0 where grains must touch; `prepare` makes of settings the columns of a pair that is
 // near, which are zero when it is new.
 //
-// This room knows two grains at a time. No standard library: step kernels include the laws.
+// This module knows two grains at a time. No standard library: step kernels include the laws.
 #pragma once
 
 #include <cstdint>

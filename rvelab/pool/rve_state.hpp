@@ -78,7 +78,7 @@ class Tokens {
   int trials_ = 0;
 };
 
-/// What a committed step, or a trial, leaves to be told of it (Report).
+/// What is reported of a committed step, or of a trial (Report).
 struct StepFigures {
   double inertial_number = 0;
   double error_estimate = 0;  ///< Pa, of the stress after it

@@ -10,7 +10,7 @@ namespace rvelab::pool {
 
 namespace {
 
-Status told(Status status, const char* what, char* text, std::size_t size) noexcept {
+Status reported(Status status, const char* what, char* text, std::size_t size) noexcept {
   const std::size_t length = std::min(std::strlen(what), size - 1);
   std::memcpy(text, what, length);
   text[length] = '\0';
@@ -23,21 +23,22 @@ Status status_of_exception(char* text, std::size_t size) noexcept {
   try {
     throw;
   } catch (const Refused& refused) {
-    return told(refused.status, refused.what(), text, size);
+    return reported(refused.status, refused.what(), text, size);
   } catch (const Interrupted&) {
-    return told(Status::interrupted, "stopped by rvelab_interrupt; the RVE is as before the call", text, size);
+    return reported(Status::interrupted, "stopped by rvelab_interrupt; the RVE is as before the call", text, size);
   } catch (const IncrementFailed& failed) {
-    return told(Status::discard, failed.what(), text, size);
+    return reported(Status::discard, failed.what(), text, size);
   } catch (const InputError& error) {
-    return told(Status::bad_input, error.what(), text, size);
+    return reported(Status::bad_input, error.what(), text, size);
   } catch (const std::bad_alloc&) {
-    return told(Status::no_memory, "there is not enough memory; free some, or use fewer or smaller RVEs", text, size);
+    return reported(Status::no_memory, "there is not enough memory; free some, or use fewer or smaller RVEs", text,
+                    size);
   } catch (const std::length_error&) {
-    return told(Status::no_memory, "more memory was asked for than there can be; use fewer RVEs", text, size);
+    return reported(Status::no_memory, "more memory was asked for than there can be; use fewer RVEs", text, size);
   } catch (const std::exception& error) {
-    return told(Status::internal, error.what(), text, size);
+    return reported(Status::internal, error.what(), text, size);
   } catch (...) {
-    return told(Status::internal, "an exception of no known kind", text, size);
+    return reported(Status::internal, "an exception of no known kind", text, size);
   }
 }
 

@@ -62,7 +62,8 @@ Team::Team(const Options& options)
 void Team::run_by_host(std::size_t count, const std::function<void(std::size_t)>& piece) {
   Round round{piece, std::vector<std::atomic<bool>>(count)};
   run_tasks_(host_, Round::work, &round, std::int64_t(count));
-  // What the host left undone is done here, so that no entry is without an answer; the host is told all the same.
+  // What the host left undone is done here, so that no entry is without an answer; the host gets the status all the
+  // same.
   const std::size_t done = round.done;
   for (std::size_t k = 0; k < count; ++k)
     if (!round.begun[k].exchange(true)) piece(k);

@@ -1,4 +1,4 @@
-// Directions in a plane without libm, since they decide bits of a state. Internal to the room.
+// Directions in a plane without libm, since they decide bits of a state. Internal to the module.
 #pragma once
 
 namespace rvelab::protocol {

@@ -1,4 +1,4 @@
-// Driving an Rve through one stage: targets of each increment, and the state of a running test. Internal to the room.
+// Driving an Rve through one stage: targets of each increment, and the state of a running test. Internal to the module.
 //
 // A drive keeps its place in RunningTest::run.progress (phase, step) alone, and changes it only together with the state
 // that it describes, so that it can resume from any pause.

@@ -1,4 +1,4 @@
-// Random numbers of a pair of grains, the same whatever the order of the grains and lists. Internal to the room.
+// Random numbers of a pair of grains, the same whatever the order of the grains and lists. Internal to the module.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // The rows of a path: which constraints they make together, and what they ask at each of its records. Internal to the
-// room.
+// module.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // A test as data: stages of loading, read from a TOML file and checked whole before anything runs.
 //
-// This room knows what a laboratory test is (stages, targets, what is recorded); it reaches grains only through
+// This module knows what a laboratory test is (stages, targets, what is recorded); it reaches grains only through
 // Rve::apply and Rve::relax and knows no file but the protocol. Pressures are compression positive; strains are
 // dimensionless and count from the start of their stage.
 #pragma once

@@ -1,6 +1,6 @@
 // A protocol run on a specimen: every stage through Rve::apply, every record at its strain.
 //
-// Stress control and error control are inside Rve::apply. The room writes no file: a Watch may keep records and
+// Stress control and error control are inside Rve::apply. The module writes no file: a Watch may keep records and
 // checkpoints, show progress, and stop the run.
 #pragma once
 

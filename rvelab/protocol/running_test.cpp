@@ -134,7 +134,8 @@ double RunningTest::held_scale(double target) const {
 }
 
 double RunningTest::with_bonds(double scale, double factor) const {
-  // Forces of bonds balance each other where there is no pressure: a thousandth of that of the reference state is told.
+  // Forces of bonds balance each other where there is no pressure: a thousandth of that of the reference state is
+  // reported.
   const double least = 1e-3 * rve.reference_pressure() * factor;
   if (scale >= least) return scale;
   const Interactions all = rve.interactions();

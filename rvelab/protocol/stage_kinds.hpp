@@ -1,5 +1,5 @@
 // What a kind of stage is: its keys, how they are read, how a test is driven by them; and the table of all kinds, which
-// the key stage.kind, reading, running and calibration use. Internal to the room.
+// the key stage.kind, reading, running and calibration use. Internal to the module.
 //
 // A new kind is one file stage_NAME.cpp with a class of its settings and a function NAME_kind() that makes one, and its
 // line here. Interactions that form by themselves have one each without a line (stage_forming.cpp).

@@ -1,4 +1,4 @@
-// What readers of several kinds of stages share. Internal to the room.
+// What readers of several kinds of stages share. Internal to the module.
 #pragma once
 
 #include <string>

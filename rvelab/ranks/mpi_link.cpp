@@ -35,7 +35,7 @@ void expect_success(int code, const char* what) {
 class MpiLink final : public Link {
  public:
   explicit MpiLink(MPI_Comm of) {
-    // A handle that is none is told to the handler of the world, which by default ends the program.
+    // An invalid handle is reported to the handler of the world, which by default ends the program.
     MPI_Errhandler as_found;
     MPI_Comm_get_errhandler(MPI_COMM_WORLD, &as_found);
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);

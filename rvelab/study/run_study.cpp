@@ -207,7 +207,7 @@ class Running {
     if (answers.column("error_Pa").size() != states_.size()) {
       throw InputError(increments_piece(0, s) + " holds " + std::to_string(answers.column("error_Pa").size()) +
                        " increments where the path has " + std::to_string(states_.size()) +
-                       "; allowed: pieces of this study; start it anew with --force");
+                       "; allowed: pieces of this study; start it again with --force");
     }
     Piece piece;
     for_states(piece, point, s, [&](std::size_t k) {

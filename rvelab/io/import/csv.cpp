@@ -228,7 +228,7 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   return wraps;
 }
 
-/// Densities of a file are told where they are not those of the materials, which hold.
+/// Densities of a file are reported where they are not those of the materials, which hold.
 void tell_of_densities(const CsvTable& table, const Specimen& specimen, const ImportOptions& options) {
   if (!table.has("density") || table.metres() != 1) return;
   const auto column = table.column({"density"});

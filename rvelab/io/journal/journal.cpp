@@ -49,12 +49,12 @@ bool check_header(const std::string& path, int file) {
   const auto found = read_at(file, 0, header);
   if (std::memcmp(header, journal_magic, std::min(found, sizeof journal_magic)) != 0) {
     throw InputError(path +
-                     ": is not a journal of rvelab, or damaged at its start; remove it or start anew with "
+                     ": is not a journal of rvelab, or damaged at its start; remove it or start again with "
                      "--force");
   }
   if (found < sizeof header) return false;
   if (get<std::uint32_t>(header + 12) != crc32c({header, 12})) {
-    throw InputError(path + ": is damaged at its start; remove it or start anew with --force");
+    throw InputError(path + ": is damaged at its start; remove it or start again with --force");
   }
   const auto version = get<std::uint32_t>(header + 8);
   if (version > journal_version) {

@@ -134,7 +134,7 @@ struct Assembler {
 
   void take(const Frame& frame) {
     if (frame.type == begin_frame) return begin(frame);
-    if (!journal.test) throw InputError(path + ": does not start with its begin frame; start anew with --force");
+    if (!journal.test) throw InputError(path + ": does not start with its begin frame; start again with --force");
     auto rest = frame.payload;
     if (frame.type == checkpoint_frame) return checkpoint(rest);
     if (frame.type < begin_frame || frame.type > snapshot_frame) return;
@@ -178,7 +178,7 @@ struct Assembler {
     const auto has_width = [](std::int64_t bytes) { return bytes > 0 && bytes <= widest; };
     if (layout.names.size() != layout.bytes.size() ||
         !std::all_of(layout.bytes.begin(), layout.bytes.end(), has_width)) {
-      throw InputError(path + ": its list of columns is damaged; start anew with --force");
+      throw InputError(path + ": its list of columns is damaged; start again with --force");
     }
     journal.test->checkpoint.specimen = get_specimen(file, "/specimen");
     journal.test->checkpoint.progress.first_grain_steps = journal.test->checkpoint.specimen.state.grain_steps;

@@ -35,13 +35,13 @@ void expect_same_run(const std::string& path, const RecordedTest& there, const R
                      first_differing_lines(there.provenance.protocol, here.protocol_text) + "), by rvelab " +
                      there.provenance.version +
                      "; allowed with --resume: the same protocol and settings; give them, or "
-                     "start anew with --force");
+                     "start again with --force");
   }
   const auto known = there.provenance.specimen_crc32c;
   if (known != 0 && known != digest(here.specimen)) {
     throw InputError(path +
                      ": was begun with another specimen; allowed with --resume: the same one; give it, or start "
-                     "anew with --force");
+                     "again with --force");
   }
 }
 
@@ -116,7 +116,7 @@ void RecordStore::resume(const RunStart& start) {
     const auto first = encode_begin(start).size() + journal_header_bytes + frame_header_bytes;
     if (there.extent.file_bytes >= first) {
       throw InputError(journal_.path() +
-                       ": is damaged at its start, and nothing after that can be read; start anew "
+                       ": is damaged at its start, and nothing after that can be read; start again "
                        "with --force");
     }
   }

@@ -126,7 +126,7 @@ constexpr long measured_period = 1000, changed_period = 100;
 constexpr double fitted_margin = 2.1;
 /// A change of stress that grows by this much over the second half of a measurement (2: in proportion to time) is the
 /// beginning of a slow one, and so many times as large when that ends: of 46 increments in which it grew errors were up
-/// to 30 times the change. Measurements of up to 800 sub-steps told no more.
+/// to 30 times the change. Measurements of up to 800 sub-steps gave no more.
 constexpr double slow_growth = 1.5, slow_goes_on = 40;
 /// Where grains roll: n that a copy relaxes after the relaxation before a turn, and how many times its change of stress
 /// is still to come. Of eleven packings that roll two crept at a constant rate, within a factor of two, for 3000 to
