@@ -71,6 +71,7 @@ struct Agitation {
   /// along alone, -1: across alone, up to 1.5: the cell widens across while it shortens.
   double strain_difference = 0;
 };
+inline constexpr double smallest_expansion = 1e-4;  ///< of a search, and between limits of density
 inline constexpr double largest_expansion = 0.1, largest_strain_difference = 1.5;
 
 /// Number and directions of the contacts of the finished specimen; none: what the preparation gives.

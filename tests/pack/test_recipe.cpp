@@ -267,7 +267,7 @@ TEST_CASE("a relative density lies between the limits of the recipe, and d10, d5
   CHECK_THAT(message_of(small, {"grains.d50_mm=7"}), Contains("contradicts grading = \"uniform\""));
 }
 
-TEST_CASE("the expansion of agitated grains is interpolated between both limits of density, its logarithm linearly") {
+TEST_CASE("the expansion of agitated grains is linear between both limits of density") {
   const std::vector<std::string> limits{"target.e_min=0.16", "target.e_max=0.24", "preparation.expansion=0.008",
                                         "preparation.expansion_at_e_max=0.0005"};
   const auto at = [&](double density) {
@@ -279,8 +279,9 @@ TEST_CASE("the expansion of agitated grains is interpolated between both limits 
     return *file.recipe.preparation.expansion;
   };
   CHECK(at(0) == Approx(0.0005));
-  CHECK(at(0.5) == Approx(0.002));
+  CHECK(at(0.5) == Approx(0.00425));
   CHECK(at(1) == Approx(0.008));
+  CHECK(at(-1) == Approx(1e-4));  // 0.0005 less 0.0075: the smallest
   CHECK_THAT(message_of(small, limits), Contains("needs target.relative_density"));
   CHECK_THAT(message_of(small, {"target.relative_density=0.5", limits[0], limits[1], limits[3]}),
              Contains("needs preparation.expansion"));

@@ -12,16 +12,16 @@ the stress, within 15 % of the largest strain. Undrained tests, whose densities 
 mean curve has the least p that was measured, q there and at the end of the measured curve within 20 %, and the sign of the change of p."""
 
 import pathlib
-import sys
 import tomllib
 
 import numpy as np
 
 import harness
-from harness import PROTOCOLS, in_turn, in_words, once, packed, records, results, sets, verdict, words, work
+from harness import PROTOCOLS, in_turn, in_words, once, records, results, sets, verdict, words, work
 
 FIT = pathlib.Path(words[0]) if words else PROTOCOLS / "fits/karlsruhe_agitated.toml"
-COUNT, GRAINS = (int(word) for word in (*words[1:3], "5", "1000")[:2]) if len(words) < 3 else map(int, words[1:3])
+COUNT = int(words[1]) if len(words) > 1 else 5
+GRAINS = int(words[2]) if len(words) > 2 else 1000
 RECIPE = [f"pack.number={GRAINS}", *words[3:]]
 UNDRAINED = {"TMU2": (200e3, [0.1, 0.25, 0.4, 0.55]), "TMU6": (200e3, [0.5, 0.65, 0.8, 0.95])}  # Pa, relative densities tried
 
@@ -46,8 +46,8 @@ def tests(protocol, name, pressure, density, settings):
 
 def sheared(path):
     """Axial strain, q and p (kPa), and eps_v of the last stage, compression positive."""
-    table = records(path, "F", "sigma", last=True)
-    F, sigma = table["F"], -table["sigma"] / 1e3
+    table = records(path, "deformation_gradient", "stress_Pa", last=True)
+    F, sigma = table["deformation_gradient"], -table["stress_Pa"] / 1e3
     axial, lateral = sigma[:, 2, 2], 0.5 * (sigma[:, 0, 0] + sigma[:, 1, 1])
     return 1 - F[:, 2, 2], axial - lateral, (axial + 2 * lateral) / 3, 1 - np.linalg.det(F)
 
@@ -115,8 +115,8 @@ def oedometer(test, role):
                            np.interp(-back, -sigma[last:end], strain[last:end])]) - first
 
     def model(path):
-        table = records(path, "F", "sigma", last=True)
-        load, height = -table["sigma"][:, 2, 2] / 1e3, 100 * (1 - table["F"][:, 2, 2])
+        table = records(path, "deformation_gradient", "stress_Pa", last=True)
+        load, height = -table["stress_Pa"][:, 2, 2] / 1e3, 100 * (1 - table["deformation_gradient"][:, 2, 2])
         top = int(np.argmax(load))
         return np.concatenate([np.interp(loads, load[:top + 1], height[:top + 1]), np.interp(-back, -load[top:], height[top:])])
     paths = tests("oedometer_unloading", test["name"], test["pressure_Pa"], density_of(test), test["settings"])
