@@ -12,13 +12,12 @@ namespace rvelab::pack {
 
 /// A checked recipe file.
 struct RecipeFile {
-  std::string name;                        ///< [pack] name
-  Recipe recipe;                           ///< with the first stress of a family
-  bool ellipsoids = false;                 ///< pack.shape = "ellipsoid": exponents are 2 without a word
-  std::vector<double> pressures;           ///< Pa, of a family; else empty
-  std::optional<double> relative_density;  ///< target.relative_density
-  std::vector<std::string> doubts;         ///< values that are likely in another unit, one line each
-  std::string resolved;  ///< the recipe with every default and assignment in it, TOML; doubts as comments
+  std::string name;                 ///< [pack] name
+  Recipe recipe;                    ///< with the first stress of a family
+  bool ellipsoids = false;          ///< pack.shape = "ellipsoid": exponents are 2 without a word
+  std::vector<double> pressures;    ///< Pa, of a family; else empty
+  std::vector<std::string> doubts;  ///< values that are likely in another unit, one line each
+  std::string resolved;             ///< the recipe with every default and assignment in it, TOML; doubts as comments
 
   /// The recipe of one specimen: with a seed of its own and, of a family, its mean pressure (Pa; all stresses are
   /// scaled).

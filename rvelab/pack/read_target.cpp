@@ -73,9 +73,8 @@ void read_stress(TableReader& reader, RecipeFile& file) {
 }
 
 /// The void ratio of a relative density between the limits of the recipe.
-void read_relative_density(TableReader& reader, RecipeFile& file) {
-  Recipe& recipe = file.recipe;
-  const auto density = file.relative_density =
+void read_relative_density(TableReader& reader, Recipe& recipe) {
+  const auto density =
       reader.optional_number("relative_density", "1", {-1, 2},
                              "D = (e_max - e)/(e_max - e_min) of the finished specimen, in place of void_ratio");
   const auto e_min = reader.optional_number(
@@ -96,27 +95,18 @@ void read_relative_density(TableReader& reader, RecipeFile& file) {
   recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
 }
 
-/// The expansion of agitated grains, by the relative density where it is given at both limits: linear between them. By
-/// tests of Karlsruhe sand; with a linear logarithm the E50 of a medium dense test is three times the measured one.
-void read_expansion(TableReader& reader, RecipeFile& file) {
-  Preparation& p = file.recipe.preparation;
+/// The expansion of agitated grains, and how far it may be reduced.
+void read_expansion(TableReader& reader, Preparation& p) {
   p.expansion = reader.optional_number(
       "expansion", "1", {0, largest_expansion, true},
       "strain of the cell along each axis, after which the grains collide without friction and are compressed with "
       "their own, as in a shaken sand; the larger, the fewer contacts",
       "(searched for target.coordination_number; else the grains are not agitated)");
-  const auto at_e_max = reader.optional_number(
-      "expansion_at_e_max", "1", {0, largest_expansion, true},
-      "the same at target.relative_density = 0; preparation.expansion is then that at 1, and between them it is linear",
-      "(preparation.expansion at every density)");
-  if (!at_e_max) return;
-  if (!p.expansion)
-    reader.mistake("expansion_at_e_max", "needs preparation.expansion, that at a relative density of 1; add it");
-  else if (!file.relative_density)
-    reader.mistake("expansion_at_e_max", "needs target.relative_density, by which it is weighted; add it");
-  else
-    p.expansion = std::clamp(*at_e_max + *file.relative_density * (*p.expansion - *at_e_max), smallest_expansion,
-                             largest_expansion);
+  p.least_expansion = reader.optional_number(
+      "least_expansion", "1", {0, largest_expansion, true},
+      "where agitated grains are denser than the target at any preparation friction, rvelab takes a third of "
+      "preparation.expansion, again and again, down to this",
+      "(the expansion is not reduced)");
 }
 
 /// Number of contacts and fabric.
@@ -157,7 +147,7 @@ void read_target(keys::TableReader& reader, RecipeFile& file) {
   if (porosity && recipe.void_ratio)
     reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
   if (porosity) recipe.void_ratio = *porosity / (1 - *porosity);
-  read_relative_density(reader, file);
+  read_relative_density(reader, recipe);
   bool stress_named = false;
   for (const char* name : {"pressure_Pa", "pressures_Pa", "stress_Pa"})
     stress_named = stress_named || reader.has(name) || reader.has_in_another_unit(name);
@@ -190,7 +180,7 @@ void read_preparation(keys::TableReader& reader, RecipeFile& file) {
   p.growth_void_ratio = reader.optional_number("growth_void_ratio", "1", positive,
                                                "method = growth: void ratio of the cell once the grains have grown",
                                                "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)");
-  read_expansion(reader, file);
+  read_expansion(reader, p);
   p.strain_difference = reader.optional_number(
       "strain_difference", "1", {-largest_strain_difference, largest_strain_difference},
       "of that compression: strain along target.fabric_direction less that across it, over the larger; positive makes "

@@ -48,6 +48,10 @@ void check_agitation(const Recipe& recipe) {
     throw InputError(
         "preparation.expansion contradicts target.coordination_number, for which it is searched; allowed: one of the "
         "two; remove one");
+  if (p.least_expansion && !(p.expansion && recipe.void_ratio && *p.least_expansion <= *p.expansion))
+    throw InputError(
+        "preparation.least_expansion is what a larger preparation.expansion is reduced to for a density; allowed: with "
+        "preparation.expansion, not above it, and target.void_ratio or relative_density; add or change one");
   if (contacts.fabric_anisotropy && p.strain_difference)
     throw InputError(
         "preparation.strain_difference contradicts target.fabric_anisotropy, for which it is searched; allowed: one of "

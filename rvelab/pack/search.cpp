@@ -84,17 +84,19 @@ class Search {
       if (made().empty() && unrest_ == draws_.size())
         throw IncrementFailed("packing: " + failures_.front() + remedy_of_unrest);
       if (contacts_out_of_reach())
-        throw not_found(recipe_, made(), draws_.size() - made().size(), End::contacts_out_of_reach);
-      if (out_of_reach()) throw not_found(recipe_, made(), draws_.size() - made().size(), End::out_of_reach);
+        throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::contacts_out_of_reach);
+      if (!reduced_expansion() && out_of_reach())
+        throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::out_of_reach);
     }
     if (made().empty()) throw IncrementFailed(failures_.front());
-    throw not_found(recipe_, made(), draws_.size() - made().size(), End::draws_spent);
+    throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::draws_spent);
   }
 
  private:
+  /// With the present expansion.
   std::vector<Draw> made() const {
     std::vector<Draw> made;
-    for (std::size_t k = 0; k < draws_.size(); ++k)
+    for (std::size_t k = begin_; k < draws_.size(); ++k)
       if (failures_[k].empty()) made.push_back(draws_[k]);
     return made;
   }
@@ -102,7 +104,7 @@ class Search {
   /// Draws with one friction scatter by thousandths, those of few grains by hundredths. Where those at the end of the
   /// range that is nearer to the target miss it by many times their standard deviation, no draw to come will meet it:
   /// ten times of four draws, which know that deviation poorly, towards five times of many.
-  bool out_of_reach() const {
+  bool out_of_reach(double deviations = 5) const {
     const double target = *recipe_.void_ratio, near_end = 0.05 * (high_ - low_);
     const std::vector<Draw> draws = made();
     const auto too_low = [&](const Draw& draw) { return draw.void_ratio < target; };
@@ -119,7 +121,21 @@ class Search {
     }
     if (n < double(draws_at_a_time)) return false;
     const double mean = sum / n, deviation = std::sqrt(std::max(0.0, squares - n * mean * mean) / (n - 1));
-    return std::abs(mean) > recipe_.void_ratio_tolerance + 5 * (1 + 4 / n) * std::max(deviation, least_deviation);
+    return std::abs(mean) >
+           recipe_.void_ratio_tolerance + deviations * (1 + 4 / n) * std::max(deviation, least_deviation);
+  }
+
+  /// Agitated grains become denser: a third of the expansion for the draws to come, where the recipe allows it. To miss
+  /// a density that could be had costs no more than the expansion.
+  bool reduced_expansion() {
+    Preparation& p = recipe_.preparation;
+    constexpr double unlikely = 0.5;
+    if (!p.least_expansion || *p.expansion <= *p.least_expansion || !out_of_reach(unlikely) ||
+        made().front().void_ratio >= *recipe_.void_ratio)
+      return false;
+    p.expansion = std::max(*p.least_expansion, *p.expansion / 3);
+    begin_ = draws_.size();
+    return true;
   }
 
   /// Whether draws near the void ratio of the target all had other contacts than its.
@@ -139,7 +155,7 @@ class Search {
   Agitation first_agitation(double friction, std::size_t known) const {
     Agitation first{recipe_.preparation.expansion.value_or(Agitation{}.expansion), 0};
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < known; ++k) {
+    for (std::size_t k = begin_; k < known; ++k) {
       const Draw& draw = draws_[k];
       const double distance = std::abs(coordinate_of(draw.friction) - coordinate_of(friction));
       if (!failures_[k].empty() || draw.compressed.empty() || distance > nearest) continue;
@@ -151,9 +167,12 @@ class Search {
 
   double next_coordinate(std::size_t number, std::size_t known) {
     // The first ones over the range, at its middles rather than its ends.
-    if (known == 0) return low_ + (high_ - low_) * ((double(number) + 0.5) / double(draws_at_a_time));
+    if (known == begin_) {
+      const double part = (double(number - begin_) + 0.5) / double(draws_at_a_time);
+      return low_ + (high_ - low_) * (begin_ == 0 ? part : 0.5 * (1 + part));  // reduced: the target is loose
+    }
     std::vector<CurvePoint> points;
-    for (std::size_t k = 0; k < known; ++k) {
+    for (std::size_t k = begin_; k < known; ++k) {
       if (failures_[k].empty()) points.push_back({coordinate_of(draws_[k].friction), draws_[k].void_ratio});
     }
     if (points.empty()) return low_ + (high_ - low_) * uniform_();
@@ -213,12 +232,13 @@ class Search {
     return packing;
   }
 
-  const Recipe& recipe_;
+  Recipe recipe_;  ///< with the present expansion
   Workers& workers_;
   const PackWatch& watch_;
   double low_, high_;
   Uniform uniform_;
   std::vector<Draw> draws_;
+  std::size_t begin_ = 0;               ///< of the draws with the present expansion
   std::atomic<std::size_t> unrest_{0};  ///< draws whose grains did not come to rest
   std::exception_ptr overlap_;          ///< of the first draw, if its grains overlapped too much
   std::vector<std::string> failures_;   ///< of each draw, written by its own thread; empty: it was made

@@ -184,7 +184,7 @@ namespace {
 
 /// Forty spheres; the curve of the test is truth.csv.
 std::string soil_by_features(const std::string& vary, const std::string& more) {
-  return "[fit]\nrecipe = \"karlsruhe\"\ncount = 2\ne_min = 0.677\ne_max = 1.054\ncompare = \"features\"\n"
+  return "[fit]\nrecipe = \"karlsruhe_compressed\"\ncount = 2\ne_min = 0.677\ne_max = 1.054\ncompare = \"features\"\n"
          "settings = [\"pack.number=40\", \"target.void_ratio_tolerance=0.03\", "
          "\"stage.compression.to_strain=0.012\"]\n"
          "vary = [" +

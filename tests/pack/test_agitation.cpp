@@ -151,6 +151,28 @@ TEST_CASE("a number of contacts out of reach is reported with what can be had at
                                            Contains("void ratios") && Contains("give a target"));
 }
 
+TEST_CASE("the expansion is reduced for a density that agitated grains are beyond, where the recipe allows it") {
+  pack::Recipe loosest = spheres(120);
+  loosest.void_ratio.reset();
+  loosest.preparation.friction = 1e6;
+  const double loose = packed_by(loosest).void_ratio;
+  loosest.preparation.expansion = 0.03;
+  const double agitated = packed_by(loosest).void_ratio;
+  REQUIRE(agitated < loose - 0.05);
+
+  pack::Recipe recipe = spheres(120);
+  recipe.void_ratio = 0.5 * (agitated + loose);
+  recipe.void_ratio_tolerance = 0.01;
+  recipe.preparation.expansion = 0.03;
+  recipe.preparation.max_draws = 60;
+  CHECK_THROWS_WITH(packed_by(recipe), Contains("target.void_ratio") && Contains("reached"));
+  recipe.preparation.least_expansion = 3e-4;
+  const pack::Packing packing = packed_by(recipe);
+  CHECK(std::abs(packing.void_ratio - *recipe.void_ratio) <= recipe.void_ratio_tolerance);
+  CHECK(packing.agitation->expansion < 0.03);
+  CHECK(packing.agitation->expansion >= 3e-4);
+}
+
 TEST_CASE("what contradicts agitation, or cannot be agitated, is refused by name") {
   const auto refused = [](void (*change)(pack::Recipe&), const std::string& key) {
     pack::Recipe recipe = spheres();
@@ -169,6 +191,8 @@ TEST_CASE("what contradicts agitation, or cannot be agitated, is refused by name
       "preparation.strain_difference");
   refused([](pack::Recipe& r) { r.stress.reset(), r.void_ratio = 0.6, r.preparation.expansion = 0.01; },
           "preparation.expansion");
+  refused([](pack::Recipe& r) { r.void_ratio = 0.6, r.preparation.least_expansion = 0.01; },
+          "preparation.least_expansion");
   refused([](pack::Recipe& r) { r = discs(), r.contacts.coordination_number = 3, r.contacts.axis = 2; },
           "target.fabric_direction");
 }

@@ -267,26 +267,6 @@ TEST_CASE("a relative density lies between the limits of the recipe, and d10, d5
   CHECK_THAT(message_of(small, {"grains.d50_mm=7"}), Contains("contradicts grading = \"uniform\""));
 }
 
-TEST_CASE("the expansion of agitated grains is linear between both limits of density") {
-  const std::vector<std::string> limits{"target.e_min=0.16", "target.e_max=0.24", "preparation.expansion=0.008",
-                                        "preparation.expansion_at_e_max=0.0005"};
-  const auto at = [&](double density) {
-    std::vector<std::string> settings = limits;
-    settings.push_back("target.relative_density=" + std::to_string(density));
-    const pack::RecipeFile file = pack::parse_recipe(small, "r.toml", settings);
-    CHECK(pack::parse_recipe(file.resolved, "again.toml").recipe.preparation.expansion ==
-          file.recipe.preparation.expansion);
-    return *file.recipe.preparation.expansion;
-  };
-  CHECK(at(0) == Approx(0.0005));
-  CHECK(at(0.5) == Approx(0.00425));
-  CHECK(at(1) == Approx(0.008));
-  CHECK(at(-1) == Approx(1e-4));  // 0.0005 less 0.0075: the smallest
-  CHECK_THAT(message_of(small, limits), Contains("needs target.relative_density"));
-  CHECK_THAT(message_of(small, {"target.relative_density=0.5", limits[0], limits[1], limits[3]}),
-             Contains("needs preparation.expansion"));
-}
-
 TEST_CASE("stresses beyond those of any solid, which no packing would come to, are refused") {
   CHECK_THAT(message_of(small, {"target.pressure_Pa=1e16"}), Contains("is out of range; allowed: above 0 to 1e+15 Pa"));
   CHECK_THAT(message_of(small, {"target.pressures_Pa=[1e4, 1e16]"}), Contains("above 0 to 1e+15"));

@@ -193,7 +193,7 @@ def compressed(path):
 
 def ways():
     """3. Void ratio and coordination number by each way, two seeds."""
-    recipe = without_density("karlsruhe")
+    recipe = without_density("karlsruhe_compressed")
     common = ["target.pressure_Pa=100e3", "preparation.friction=0"]
     found = []
     for expansion in (4e-3, 8e-3, 1.6e-2):
@@ -209,7 +209,7 @@ def ways():
 
 def strengths():
     """4. E50, MPa, largest q, its strain in %, and the mean q from 25 to 30 %, kPa, of three specimens."""
-    recipe = PROTOCOLS / "soils/karlsruhe.toml"
+    recipe = PROTOCOLS / "soils/karlsruhe_compressed.toml"
     found = {}
     for name, target in (("lubricated", []), ("agitated", ["target.coordination_number=4.8"])):
         for seed in (1, 2, 3):
@@ -228,7 +228,7 @@ def strengths():
 def costs():
     """5. Processor seconds of packs of 500 spheres by density, and by density and number of contacts."""
     import resource
-    recipe, found = PROTOCOLS / "soils/karlsruhe.toml", {"density": [], "both": []}
+    recipe, found = PROTOCOLS / "soils/karlsruhe_compressed.toml", {"density": [], "both": []}
     for seed in range(1, 7):
         for name, target in (("density", []), ("both", ["target.coordination_number=4.8"])):
             before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime

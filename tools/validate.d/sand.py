@@ -38,7 +38,7 @@ def tests(protocol, name, pressure, density, settings):
     recipe = sets(f"target.relative_density={density:.4f}", f"target.pressure_Pa={pressure}", *RECIPE)
 
     def one(seed):
-        specimen = once(work / f"{name}_{seed}.h5", "pack", "karlsruhe", *recipe, *sets(f"pack.seed={seed}"))
+        specimen = once(work / f"{name}_{seed}.h5", "pack", PROTOCOLS / "soils/karlsruhe.toml", *recipe, *sets(f"pack.seed={seed}"))
         return once(work / f"{name}_{seed}_R.h5", "run", protocol, "--specimen", specimen,
                     *sets(f"test.pressure_Pa={pressure}", *settings), "--threads", 1, codes=None)
     return list(in_turn(one, range(1, COUNT + 1)))
