@@ -74,4 +74,22 @@ inline std::vector<std::map<std::string, std::string>> kept(const std::string& f
   return rows;
 }
 
+/// Drained tests on Karlsruhe fine sand, as measured.
+inline std::vector<ElementTest> karlsruhe_drained() {
+  std::vector<ElementTest> tests;
+  for (const auto& row : kept("karlsruhe_drained.csv")) {
+    const double q = std::stod(row.at("q")) * 1e3, p = std::stod(row.at("p")) * 1e3;
+    if (tests.empty() || tests.back().name != row.at("test")) {
+      ElementTest& test = tests.emplace_back();
+      test.name = row.at("test"), test.loading = Loading::drained;
+      test.p0 = p - q / 3, test.e0 = std::stod(row.at("e"));
+    }
+    tests.back().strain.push_back(std::stod(row.at("eps_a")) / 100);
+    tests.back().eps_v.push_back(std::stod(row.at("eps_v")) / 100);
+    tests.back().q.push_back(q);
+    tests.back().p.push_back(p);
+  }
+  return tests;
+}
+
 }  // namespace rvelab::test

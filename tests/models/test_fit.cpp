@@ -236,6 +236,25 @@ TEST_CASE("cards have the keywords of their hosts, and tables kPa") {
   CHECK(input_error([&] { card(found, "plaxis"); }) == "host is 'plaxis'; choose one of abaqus, calculix, table");
 }
 
+TEST_CASE(
+    "NorSand fitted to Karlsruhe fine sand has its critical friction angle and predicts tests at another pressure") {
+  auto tests = karlsruhe_drained();
+  REQUIRE(tests.size() == 25);
+  for (ElementTest& test : tests) test.fitted = std::abs(test.p0 - 200e3) > 20e3;
+  const Fit found = fit("norsand", tests, {});
+  const double M = parameter(found, "M_tc").value;
+  CHECK(std::asin(3 * M / (6 + M)) / 0.017453292519943295 == Approx(33.1).margin(1));  // Wichtmann et al. 2019
+  std::size_t kept_back = 0;
+  for (const Misfit& misfit : found.misfits) {
+    CAPTURE(misfit.test);
+    if (misfit.fitted) continue;
+    ++kept_back;
+    CHECK(misfit.stress < 0.09);
+    CHECK(misfit.strain < 0.01);
+  }
+  CHECK(kept_back == 5);
+}
+
 TEST_CASE("misfits on tests of specimens that were kept back stay what they were") {
   // Three specimens each of 250 grains of the recipe toyoura: the bounds are a tenth above what was found, to be
   // noticed when a model gets worse. NorSand and hypoplasticity are fitted to both densities at once.
