@@ -132,6 +132,10 @@ Misfit misfit(const ElementTest& measured, const Calculation& calculated) {
   const ElementTest& by_model = calculated.test;
   const double q = largest(measured.q);
   if (measured.strain.empty() || !std::isfinite(largest(by_model.q))) return result;
+  if (measured.loading != Loading::isotropic && !(q > 0)) {
+    result.remark = "q is zero throughout";
+    return result;
+  }
   if (measured.loading == Loading::cyclic_shear && !calculated.remark.empty()) return result;
   if (measured.loading != Loading::isotropic) result.stress = root_mean_square(by_model.q, measured.q) / q;
   if (measured.loading == Loading::undrained)

@@ -136,13 +136,32 @@ double student(int freedom) {
          (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
 }
 
-/// Rows of one curve are not independent: a curve counts as one observation.
+/// Deviations along a curve go on from row to row: with a correlation r of neighbours, n rows are worth n (1 - r)/(1 +
+/// r) independent ones (Bartlett 1946), at least one.
+double independent_rows(const Eigen::Ref<const Eigen::VectorXd>& deviations) {
+  const Eigen::Index n = deviations.size();
+  const double squares = deviations.squaredNorm();
+  if (n < 2 || !(squares > 0)) return 1;
+  const double r = std::max(0.0, deviations.head(n - 1).dot(deviations.tail(n - 1)) / squares);
+  return std::max(1.0, double(n) * (1 - r) / (1 + r));
+}
+
 void set_intervals(const Residuals& residuals, const Eigen::VectorXd& z, Fit& fit) {
   const Search& search = residuals.search;
   Eigen::VectorXd at(residuals.rows);
   Eigen::MatrixXd jacobian(residuals.rows, z.size());
   residuals(z, at);
   residuals.df(z, jacobian);
+  double observations = 0;
+  Eigen::Index row = 0;
+  for (const Curve& curve : residuals.curves) {
+    const Eigen::Index rows = Eigen::Index(curve.values.size());
+    const double independent = independent_rows(at.segment(row, rows));
+    at.segment(row, rows) *= std::sqrt(independent);
+    jacobian.middleRows(row, rows) *= std::sqrt(independent);
+    observations += independent;
+    row += rows;
+  }
   for (Eigen::Index k = 0; k < z.size(); ++k) jacobian.col(k) /= std::max(search.per_z(k, z[k]), 1e-300);
   const Eigen::VectorXd size = jacobian.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
@@ -150,7 +169,7 @@ void set_intervals(const Residuals& residuals, const Eigen::VectorXd& z, Fit& fi
   const Eigen::MatrixXd inverse = (normal + 1e-12 * Eigen::MatrixXd::Identity(z.size(), z.size()))
                                       .ldlt()
                                       .solve(Eigen::MatrixXd::Identity(z.size(), z.size()));
-  const int freedom = std::max(1, int(residuals.curves.size()) - int(z.size()));
+  const int freedom = std::max(1, int(observations) - int(z.size()));
   const double deviation = std::sqrt(at.squaredNorm() / freedom);
   for (Eigen::Index k = 0; k < z.size(); ++k) {
     const Entry& entry = search.entry_of(k);
