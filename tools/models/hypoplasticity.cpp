@@ -23,10 +23,10 @@ std::vector<Entry> parameters_of_hypoplasticity(const Tests& tests, const Number
   const bool angle = has_number(numbers, "phi_cs_deg"), line = has_number(numbers, "critical_line_e_G");
   const bool largest = has_number(numbers, "e_i0"), smallest = has_number(numbers, "e_d0");
   const double M = stress_ratio_at_the_end(tests);
-  double e_c0 = 0, loosest = 0;
+  double e_c0 = 0, densest = 1e9;
   for (const ElementTest& test : shear_tests(tests)) {
     e_c0 = std::max(e_c0, 1.05 * void_ratio_at_the_end(test));
-    loosest = std::max(loosest, test.e0);
+    densest = std::min(densest, test.e0);
   }
   e_c0 = number_or(numbers, "critical_line_e_G", e_c0);
   return {
@@ -34,7 +34,8 @@ std::vector<Entry> parameters_of_hypoplasticity(const Tests& tests, const Number
        angle ? numbers.at("phi_cs_deg") : std::asin(3 * M / (6 + M)) / degree, 10, 50, !angle, false},
       {"h_s", "Pa", "granulate hardness", 2e9, 1e6, 1e13, true, true},
       {"n", "", "exponent of compression", 0.35, 0.05, 0.9, true, false},
-      {"e_d0", "", "smallest void ratio at p = 0", number_or(numbers, "e_d0", 0.6 * e_c0), 0.05, 1.5, !smallest, false},
+      {"e_d0", "", "smallest void ratio at p = 0", number_or(numbers, "e_d0", std::min(0.6 * e_c0, 0.9 * densest)),
+       0.05, densest, !smallest, false},
       {"e_c0", "", "critical void ratio at p = 0", e_c0, 0.1, 3, !line, false},
       {"e_i0", "", largest ? "largest void ratio at p = 0" : "largest void ratio at p = 0: 1.15 e_c0",
        number_or(numbers, "e_i0", unknown), 0.1, 4, false, false},
