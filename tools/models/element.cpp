@@ -48,6 +48,7 @@ class Path {
       : element{test.p0, test.p0, 0, 0, test.e0, {}}, law(law), loading(test.loading) {
     law.start(element);
     p0 = test.p0;
+    e0 = test.e0;
     step = stress_driven(loading) ? 0.01 * p0 : 1e-5;
   }
 
@@ -116,13 +117,13 @@ class Path {
     return Slope{rate, strain};
   }
 
-  static Element moved(const Element& from, const Slope& slope, double length) {
+  Element moved(const Element& from, const Slope& slope, double length) const {
     Element to = from;
     to.sigma_a += length * slope.rate.sigma_a;
     to.sigma_r += length * slope.rate.sigma_r;
     to.eps_a += length * slope.strain.a;
     to.eps_r += length * slope.strain.r;
-    to.e -= length * (1 + from.e) * slope.strain.volumetric();
+    to.e = (1 + e0) * std::exp(-(to.eps_a + 2 * to.eps_r)) - 1;
     for (std::size_t k = 0; k < to.memory.size(); ++k) to.memory[k] += length * slope.rate.memory[k];
     return to;
   }
@@ -130,6 +131,7 @@ class Path {
   /// One step of Kutta's third-order formula to `next`, its error from the midpoint rule (Fellin and Ostermann 2002).
   double advance(double length) {
     constexpr double none = std::numeric_limits<double>::infinity();
+    why.clear();
     const auto k1 = slope(element);
     if (!k1) return none;
     const auto k2 = slope(moved(element, *k1, 0.5 * length));
@@ -153,7 +155,7 @@ class Path {
   const Law& law;
   Loading loading;
   Element next{};
-  double p0 = 0, step = 0, sign = 0, last_radial = -0.3;
+  double p0 = 0, e0 = 0, step = 0, sign = 0, last_radial = -0.3;
   int steps = 0;
 };
 
