@@ -10,7 +10,6 @@ namespace rvelab::pack {
 
 namespace {
 
-constexpr double smallest_expansion = 1e-4;
 /// d Z_mech / d ln expansion, and d (anisotropy) / d (difference of strains), of 400 discs and 500 spheres.
 double contacts_by_expansion(int dimension) { return dimension == 2 ? -0.2 : -0.8; }
 double anisotropy_by_difference(int dimension) { return dimension == 2 ? 0.1 : 0.4; }

@@ -103,9 +103,9 @@ void read_expansion(TableReader& reader, Preparation& p) {
       "their own, as in a shaken sand; the larger, the fewer contacts",
       "(searched for target.coordination_number; else the grains are not agitated)");
   p.least_expansion = reader.optional_number(
-      "least_expansion", "1", {0, largest_expansion, true},
+      "least_expansion", "1", {0, largest_expansion},
       "where agitated grains are denser than the target at any preparation friction, rvelab takes a third of "
-      "preparation.expansion, again and again, down to this",
+      "preparation.expansion, again and again, down to this; 0: in the end the grains are not agitated",
       "(the expansion is not reduced)");
 }
 

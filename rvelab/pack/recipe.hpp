@@ -61,7 +61,8 @@ struct Preparation {
   // Agitation (agitation.hpp) between the preparation friction and that of the materials:
   std::optional<double> expansion;          ///< strain along each axis; none: searched for a coordination number, or no
                                             ///< agitation
-  std::optional<double> least_expansion;    ///< to which it is reduced for a void ratio out of reach; none: it is not
+  std::optional<double> least_expansion;    ///< to which it is reduced for a void ratio out of reach; 0: at last no
+                                            ///< agitation; none: it is not reduced
   std::optional<double> strain_difference;  ///< of the compression after it; none: searched for a fabric, or 0
 };
 
@@ -72,6 +73,7 @@ struct Agitation {
   /// along alone, -1: across alone, up to 1.5: the cell widens across while it shortens.
   double strain_difference = 0;
 };
+inline constexpr double smallest_expansion = 1e-4;  ///< of a search
 inline constexpr double largest_expansion = 0.1, largest_strain_difference = 1.5;
 
 /// Number and directions of the contacts of the finished specimen; none: what the preparation gives.

@@ -125,15 +125,16 @@ class Search {
            recipe_.void_ratio_tolerance + deviations * (1 + 4 / n) * std::max(deviation, least_deviation);
   }
 
-  /// Agitated grains become denser: a third of the expansion for the draws to come, where the recipe allows it. To miss
-  /// a density that could be had costs no more than the expansion.
+  /// Agitated grains become denser: a third of the expansion for the draws to come, where the recipe allows it, in the
+  /// end no agitation. To miss a density that could be had costs no more than the expansion.
   bool reduced_expansion() {
     Preparation& p = recipe_.preparation;
     constexpr double unlikely = 0.5;
-    if (!p.least_expansion || *p.expansion <= *p.least_expansion || !out_of_reach(unlikely) ||
+    if (!p.expansion || !p.least_expansion || *p.expansion <= *p.least_expansion || !out_of_reach(unlikely) ||
         made().front().void_ratio >= *recipe_.void_ratio)
       return false;
     p.expansion = std::max(*p.least_expansion, *p.expansion / 3);
+    if (*p.expansion < smallest_expansion) p.expansion.reset();
     begin_ = draws_.size();
     return true;
   }
