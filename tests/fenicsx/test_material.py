@@ -36,7 +36,7 @@ class Stress(unittest.TestCase):
         for strains, gradient in (("finite", H), ("small", 0.5 * (H + H.T))):
             sigma, stiffness = response(file, gradient, 1e-3)
             for cell in (mesh.CellType.quadrilateral, mesh.CellType.triangle):
-                material = fenicsx.Material(block((2, 2), cell=cell, distorted=0.2), file, strains=strains, share=False)
+                material = fenicsx.Material(block((2, 2), cell=cell, distorted=0.2), file, strains=strains, share=0)
                 move(material, H)
                 self.assertEqual(material.update(), 1)
                 self.assertGreater(np.abs(sigma + P * np.eye(2)).max(), 0.05 * P)
@@ -50,7 +50,7 @@ class Stress(unittest.TestCase):
         cube = mesh.create_unit_cube(MPI.COMM_WORLD, 1, 1, 1, mesh.CellType.hexahedron)
         gradient = np.diag([1e-4, 5e-5, -2e-4])
         gradient[0, 2] = 1e-4
-        material = fenicsx.Material(cube, file, share=False)
+        material = fenicsx.Material(cube, file, share=0)
         move(material, gradient)
         material.update()
         sigma = response(file, gradient, 1e-3)[0]
@@ -79,7 +79,7 @@ class Stress(unittest.TestCase):
         material = fenicsx.Material(block((1, 3)), specimen(), initial=fenicsx.geostatic(1.5, 20e3, 0.5, 50e3))
         vertical = -(50e3 + 20e3 * (1.5 - material.x[:, 1]))
         np.testing.assert_allclose(material.sigma[:, 1, 1], vertical, rtol=5e-3)
-        np.testing.assert_allclose(material.sigma[:, 0, 0], 0.5 * vertical, rtol=5e-3)
+        np.testing.assert_allclose(material.sigma[:, 0, 0], 0.5 * vertical, rtol=2e-2)
         np.testing.assert_allclose(material.sigma[:, 0, 1], 0, atol=100)
         with self.assertRaisesRegex(ValueError, "compression .negative. at every point"):
             fenicsx.Material(block((1, 1)), specimen(), initial=lambda x: np.zeros((len(x), 2, 2)))
@@ -136,6 +136,23 @@ class Average(unittest.TestCase):
         np.testing.assert_allclose(averaged[:, 1, 0], values[:, 1, 0] / (1 + (length * wave) ** 2), atol=2e-3)
         np.testing.assert_allclose(averaged[:, 0, 1], 0, atol=1e-14)
 
+    def test_stress_of_a_wave_beside_its_average_and_none_of_a_uniform_strain(self):
+        length, wave, size, share = 0.1, np.pi / 0.5, 1e-6, 0.3
+        made = mesh.create_rectangle(MPI.COMM_WORLD, [(0, 0), (1, 0.1)], (60, 2), mesh.CellType.quadrilateral)
+        material = fenicsx.Material(made, specimen(), length=length, stiffening=share, strains="small")
+        C = material.points.shared[0].stiffness
+        for k in range(1, 3):  # in two increments: it is a sum over them
+            material.du.interpolate(lambda x: np.array([size / wave * np.sin(wave * x[0]), 0 * x[0]]))
+            material.update()
+            beside = k * size * np.cos(wave * material.x[:, 0]) * (1 - 1 / (1 + (length * wave) ** 2))
+            more = material.values()[0] - material.sigma
+            np.testing.assert_allclose(more[:, 1, 1], share * C[1, 1, 0, 0] * beside, atol=0.03 * size * C[1, 1, 0, 0] * share * k)
+            material.commit()
+        before = material.values()[0] - material.sigma
+        move(material, size * np.eye(2))
+        material.update()
+        np.testing.assert_allclose(material.values()[0] - material.sigma, before, atol=1e-4)
+
 
 class Forces(unittest.TestCase):
     def forms(self, material, pressed=True):
@@ -176,7 +193,7 @@ class Forces(unittest.TestCase):
                 np.testing.assert_allclose(difference, expected.array, atol=(1e-6 if strains == "finite" else 2e-4) * scale)
 
     def test_tangent_of_rves_is_the_derivative_of_their_stress(self):
-        material = fenicsx.Material(block((1, 1)), specimen(), share=False, tolerance=1e-5, tolerance_rel=1e-3)
+        material = fenicsx.Material(block((1, 1)), specimen(), share=0, tolerance=1e-5, tolerance_rel=1e-3)
         tangent = material.values()[1][0]
         for k, direction in enumerate(([[1, 0], [0, 0]], [[0, 0], [0, 1]], [[0, 1], [1, 0]])):
             sides = []

@@ -17,7 +17,7 @@ from . import compat
 from .solver import Solver
 
 FORMAT = 1
-PER_POINT = "sigma", "error", "F", "stress", "tangent", "shared_F", "home", "id"
+PER_POINT = "sigma", "error", "F", "stress", "tangent", "beside", "shared_F", "home", "id"
 
 
 def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
@@ -37,7 +37,7 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
     stress, tangent = material.values()
     mine = dict(numbers=material.numbers, cells=cells, u=material.u.x.array.reshape(-1, d)[dofs],
                 last=last.reshape(-1, d)[dofs], sigma=material.sigma, error=material.error, F=material.F, stress=stress,
-                tangent=tangent, shared_F=points.F, home=points.home, id=points.ids)
+                tangent=tangent, beside=material.beside, shared_F=points.F, home=points.home, id=points.ids)
     parts = comm.gather(mine)
     if comm.rank != 0:
         comm.Barrier()
@@ -81,7 +81,7 @@ def load(solver: Solver, folder: str | os.PathLike[str]) -> None:
         function.x.scatter_forward()
     solver._last = material.du.x.array.copy() if about["last_dt"] > 0 else None
     material.du.x.array[:] = 0
-    material.sigma, material.error, material.F = mine["sigma"], mine["error"], mine["F"]
+    material.sigma, material.error, material.F, material.beside = (mine[name] for name in ("sigma", "error", "F", "beside"))
     material.set_values(mine["stress"], mine["tangent"])
     material.keep()
     solver.forms.t = about["t"]

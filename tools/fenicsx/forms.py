@@ -23,15 +23,19 @@ class Forms:
         self.material, self.mesh, self.space = material, material.mesh, material.space
         self.owned, self.blocks = compat.owned(self.space), self.space.dofmap.index_map_bs
         self.total = self.owned + self.space.dofmap.index_map.num_ghosts * self.blocks
-        self._fixed: list[tuple[np.ndarray, Any]] = []  # (degrees of freedom of this rank with ghosts, value)
+        # (degrees of freedom of this rank with ghosts, value, factor of each)
+        self._fixed: list[tuple[np.ndarray, Any, np.ndarray | float]] = []
         self._pressures: list[tuple[np.ndarray, Any, Any]] = []  # (facets, value, constant)
         self._body, self._weight = None, None
         self._ready, self.t = False, 0.0
 
-    def fix(self, where: Where, component: int, value: Any, at: str) -> None:
+    def fix(self, where: Where, component: int, value: Any, at: str, profile: Any) -> None:
         if component not in range(self.material.d):
             raise ValueError(f"component is {component}; allowed: 0 to {self.material.d - 1}")
-        self._fixed.append((self._located(where, at) * self.blocks + component, value))
+        nodes, factor = self._located(where, at), 1.0
+        if profile is not None:
+            factor = np.asarray(profile(self.space.tabulate_dof_coordinates()[nodes].T), float)
+        self._fixed.append((nodes * self.blocks + component, value, factor))
 
     def pressure(self, where: Where, value: Any) -> None:
         facets = compat.locate(self.mesh, self.material.d - 1, where)
@@ -67,8 +71,8 @@ class Forms:
     def targets(self, start: float) -> np.ndarray:
         """Increments of the fixed degrees of freedom from `start` to the present time, in the order of `fixed`."""
         found = np.zeros(self.total)
-        for dofs, value in self._fixed:
-            found[dofs] = _at(value, self.t) - _at(value, start)
+        for dofs, value, factor in self._fixed:
+            found[dofs] = factor * (_at(value, self.t) - _at(value, start))
         return found[self.fixed]
 
     def set_fixed(self, array: np.ndarray, increments: np.ndarray) -> None:
@@ -76,7 +80,7 @@ class Forms:
 
     def _compile(self) -> None:
         mask = np.zeros(self.total, bool)
-        for dofs, _ in self._fixed:
+        for dofs, _, _ in self._fixed:
             mask[dofs] = True
         self.fixed = np.flatnonzero(mask)
         self.free = np.flatnonzero(~mask[:self.owned])
@@ -155,13 +159,14 @@ class Forms:
         step.x.scatter_forward()
         return step.x.array.copy()
 
-    def reaction(self, where: Where, at: str) -> np.ndarray:
+    def reaction(self, where: Where, at: str, along: Any) -> np.ndarray | float:
         self.set_time(self.t)
-        dofs = self._located(where, at) * self.blocks
-        inside, outside = self.forces()
-        force = inside + outside
-        return np.array([self.mesh.comm.allreduce(float(force[(dofs + k)[dofs + k < self.owned]].sum()), MPI.SUM)
-                         for k in range(self.material.d)])
+        nodes = self._located(where, at)
+        nodes = nodes[nodes * self.blocks < self.owned]
+        force = sum(self.forces()).reshape(-1, self.blocks)[nodes]
+        if along is not None:
+            return self.mesh.comm.allreduce(float(np.sum(force.T * along(self.space.tabulate_dof_coordinates()[nodes].T))))
+        return np.array([self.mesh.comm.allreduce(float(each), MPI.SUM) for each in force.sum(axis=0)])
 
 
 def _at(value: float | Sequence[float] | Callable[[float], Any], t: float) -> Any:

@@ -22,20 +22,25 @@ class Material:
                  integrals are written on the first mesh, which gives the same forces. "small": dH is the symmetric gradient
     degree       of the displacement: 1, or 2 (8 nodes in a quadrilateral, 20 in a hexahedron)
     tolerance    of the host's forces and of the RVEs' stresses, over the pressure (Solver)
-    share        points that saw elastic strain alone share one RVE
+    share        points that saw elastic strain alone share one RVE, as long as its tangent errs by less than this share of
+                 the pressure; True: the tolerance; 0: each point has its own from the beginning
     initial      function of x (n, 3): stresses (n, d, d) Pa, tension positive, that the specimens are brought to; none:
                  theirs. For soil under its weight: geostatic()
-    length       m; 0: none. The RVEs get the increment averaged by (1 - length^2 laplace) e = dH (nonlocal_average.py)
+    length       m; 0: none. Stiffness `stiffening` (of the elastic one) of the strain beside its average over this length, which
+                 gives bands a width (nonlocal_average.py)
     balance      RVEs move between ranks by their measured cost"""
 
     def __init__(self, mesh: Any, specimens: Sources, *, cell_tags: Any = None, strains: str = "finite", degree: int = 1,
-                 quadrature_degree: int = 2, tolerance: float = 1e-3, share: bool = True,
-                 initial: Callable[[np.ndarray], np.ndarray] | None = None, length: float = 0, balance: bool = True,
+                 quadrature_degree: int = 2, tolerance: float = 1e-3, share: float | bool = True,
+                 initial: Callable[[np.ndarray], np.ndarray] | None = None, length: float = 0,
+                 stiffening: float = 0.1, balance: bool = True,
                  tolerance_rel: float = 0.1, workers: int = 1) -> None:
         if strains not in ("finite", "small"):
             raise ValueError(f'strains is {strains!r}; allowed: "finite", "small"')
         if not 1e-6 <= tolerance <= 0.1:
             raise ValueError(f"tolerance is {tolerance:g}; allowed: 1e-6 to 0.1, over the pressure")
+        if not 0 <= share <= 0.1 and share is not True:
+            raise ValueError(f"share is {share:g}; allowed: 0 (off) to 0.1, over the pressure, or True: the tolerance")
         self.mesh, self.d, self.finite, self.tolerance = mesh, mesh.geometry.dim, strains == "finite", tolerance
         d = self.d
         self.quadrature_degree = quadrature_degree
@@ -66,11 +71,13 @@ class Material:
             of_cells[cell_tags.indices[owned]] = cell_tags.values[owned]
             tags = np.repeat(of_cells, nq)
         group, family = members(chosen_sources(specimens, tags, self.numbers), sigma, d, options)
-        self.points = Points(mesh.comm, d, group, family, options, share, balance, sigma)
+        self.points = Points(mesh.comm, d, group, family, options, tolerance if share is True else float(share), balance, sigma)
+        self.stiffening, self.C = stiffening, None
         self.average = Average(mesh, reference, self.dx, quadrature_degree, length) if length > 0 else None
         n = len(self.numbers)
         self.F = np.tile(np.eye(d), (n, 1, 1))  # from the first mesh to the committed state
         self.sigma, self.error = np.zeros((n, d, d)), np.zeros(n)  # of the last trial
+        self.beside = self._new_beside = np.zeros((n, d, d))  # sum of the increments of strain less their averages
         self._new, self._kept = self.F, None
         draws = [np.random.Generator(np.random.PCG64(int(k))).standard_normal((d, d)) for k in self.numbers]
         drawn = tensors.symmetric(np.reshape(draws, (-1, d, d)))
@@ -93,22 +100,29 @@ class Material:
             dH = self._new @ np.linalg.inv(self.F) - np.eye(d)
         else:
             dH = tensors.symmetric(increment)
-        if self.average is not None:
-            dH = self.average(dH)
         found = self.points.trial(dH)
         if found.scale < 1:
             return found.scale
         self.sigma, self.error = found.sigma, found.error
         stress, tangent = found.sigma, found.stiffness
+        if self.average is not None:
+            stress, tangent = self._with_average(dH, stress, tangent)
         if self.finite:
             stress, tangent = tensors.nominal(stress, tensors.current_tangent(tangent, stress), self._new)
         self.set_values(stress, tangent)
         return 1.0
 
+    def _with_average(self, dH: np.ndarray, stress: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        strain = tensors.symmetric(dH)
+        spin = dH - strain
+        self._new_beside = self.beside + spin @ self.beside - self.beside @ spin + strain - self.average(strain)
+        self.C = tangent.copy() if self.C is None else self.C
+        return stress + self.stiffening * np.einsum("nijkl,nkl->nij", self.C, self._new_beside), tangent + self.stiffening * self.C
+
     def commit(self) -> None:
         """Collective. The last trial becomes the state, and u + du the displacement."""
         self.points.commit()
-        self.F = self._new
+        self.F, self.beside = self._new, self._new_beside
         self.u.x.array[:] += self.du.x.array
         self.du.x.array[:] = 0
         self.keep()

@@ -1,10 +1,14 @@
-"""Nonlocal average of the strain increment: a band then has a width of some lengths, whatever the elements are.
+"""A width of bands that is not that of the elements. The RVEs alone have none: where they soften, strain gathers in one row of
+elements. With a length l the stress gets a term of the strain beside its average,
 
-    e - length^2 laplace(e) = dH in the mesh, no flux through its boundary
+    sigma = sigma of the RVE + h C : (e - a),    a - l^2 laplace(a) = e in the mesh, no flux through its boundary
 
-for each component, solved on the nodes (linear elements) with one factorisation for all increments. A uniform dH stays
-as it is. The implicit gradient form is that of Peerlings et al. (1996, IJNME 39, 3391), with the increment of displacement
-gradient as the averaged quantity; the stress then follows the averaged increment, its tangent the local one."""
+with e the strain increments' sum and C the tangent of the first state. The average is solved on the nodes (linear elements)
+with one factorisation for all increments. A uniform strain stays as it is; waves shorter than l are stiffened by up to h C,
+so that bands have a width of some l as long as h C is more than the softening. The averaged equation is that of Peerlings et
+al. (1996, IJNME 39, 3391), the stress that of the micromorphic approach of Forest (2009, J. Eng. Mech. 135, 117; both from
+memory). To give the averaged increment itself to the RVEs does not work: where neighbouring RVEs differ, no displacement of a
+wave shorter than l can balance their stresses."""
 from __future__ import annotations
 
 from typing import Any

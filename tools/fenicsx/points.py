@@ -26,13 +26,14 @@ class Response(NamedTuple):
 
 class Points:
     """n points of this rank. group: (n) number of the family member of each point, a key of `members`, which are
-    snapshots of RVEs. sigma: (n, d, d) Pa, stresses of the points near those of their members, or None: theirs."""
+    snapshots of RVEs. share: error of the stress over the pressure that points may have which share an RVE; 0: none
+    does. sigma: (n, d, d) Pa, stresses of the points near those of their members, or None: theirs."""
 
     def __init__(self, comm: Any, d: int, group: np.ndarray, members: dict[int, bytes], options: dict[str, Any],
-                 share: bool = True, balance: bool = True, sigma: np.ndarray | None = None) -> None:
+                 share: float = 0, balance: bool = True, sigma: np.ndarray | None = None) -> None:
         self.comm, self.d, self.group, self.balances = comm, d, group, balance and comm.size > 1
         self.pool = rvelab.Pool(**options)
-        self.shared = {key: Shared(self.pool, d, members[key], options, share) for key in sorted(set(group.tolist()))}
+        self.shared = {key: Shared(self.pool, d, members[key], share) for key in sorted(set(group.tolist()))}
         n = len(group)
         self.F = np.tile(np.eye(d), (n, 1, 1))
         for key, shared in self.shared.items() if sigma is not None else ():
@@ -43,7 +44,7 @@ class Points:
         self.total = 0.0  # grain-steps of all increments
         self.moved, self.spread = 0, []  # RVEs moved; per increment: work of the busiest rank over the mean
         self._pending = self.F
-        if not share:
+        if share == 0:
             self.make(np.arange(n))
 
     @property

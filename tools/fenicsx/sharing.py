@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
 import numpy as np
 import rvelab
@@ -14,9 +13,9 @@ SMALLEST, LARGEST = 1e-6, 1e-3  # strains between which the range is looked for
 
 class Shared:
     """An RVE at the state of a member of the family, and the strains for which sigma + C : eps stands for its answer: where
-    it errs by less than tolerance_abs p. They are measured by trials along each component, forwards and backwards."""
+    it errs by less than `share` p. They are measured by trials along each component, forwards and backwards."""
 
-    def __init__(self, pool: rvelab.Pool, d: int, snapshot: bytes, options: dict[str, Any], probe: bool) -> None:
+    def __init__(self, pool: rvelab.Pool, d: int, snapshot: bytes, share: float) -> None:
         self.d = d
         template = pool.template(snapshot)
         self.id = int(pool.spawn(template)[0])
@@ -26,8 +25,8 @@ class Shared:
         self.stiffness = tensors.stiffness_of(found.tangent, d)[0]
         self.estimate = float(found.error_estimate[0])
         self.p = float(-np.trace(self.sigma) / d)
-        self.allowed = options["tolerance_abs"] * self.p
-        self.range = self._range(pool) if probe else 0.0
+        self.allowed = share * self.p
+        self.range = self._range(pool) if share > 0 else 0.0
         pool.revert([self.id])
 
     def _range(self, pool: rvelab.Pool) -> float:

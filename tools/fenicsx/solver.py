@@ -40,7 +40,8 @@ class NotConverged(RuntimeError):
 class Solver:
     """Equilibrium of a Material under loads, all functions of a load parameter t, or constant:
 
-    fix(where, component, value)    displacement m of a component on a part of the boundary: where maps x (3, n) to a mask
+    fix(where, component, value)    displacement m of a component on a part of the boundary: where maps x (3, n) to a mask;
+                                    times profile(x) (n), if there is one
     pressure(where, value)          Pa on a part of the boundary; at finite strains it follows the boundary
     body_force(value)               N/m^3 of the first mesh, a vector, such as (0, -17e3)
 
@@ -53,8 +54,8 @@ class Solver:
         self._last, self._last_dt = None, 0.0  # displacement of the increment before, for the predictor
 
     def fix(self, where: Callable[[np.ndarray], np.ndarray], component: int, value: float | Callable[[float], float] = 0.0,
-            at: str = "facets") -> None:
-        self.forms.fix(where, component, value, at)
+            at: str = "facets", profile: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
+        self.forms.fix(where, component, value, at, profile)
 
     def pressure(self, where: Callable[[np.ndarray], np.ndarray], value: float | Callable[[float], float]) -> None:
         self.forms.pressure(where, value)
@@ -62,15 +63,18 @@ class Solver:
     def body_force(self, value: Sequence[float] | Callable[[float], Sequence[float]]) -> None:
         self.forms.body_force(value)
 
-    def reaction(self, where: Callable[[np.ndarray], np.ndarray], at: str = "facets") -> np.ndarray:
-        """(d) N, or N/m in the plane: force that the constraints exert on the soil there. Collective."""
-        return self.forms.reaction(where, at)
+    def reaction(self, where: Callable[[np.ndarray], np.ndarray], at: str = "facets",
+                 along: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray | float:
+        """(d) N, or N/m in the plane: force that the constraints exert on the soil there. along: function of x (3, n), to
+        directions (d, n) of the nodes: the sum of the forces along them, a number. Collective."""
+        return self.forms.reaction(where, at, along)
 
     def march(self, end: float, first: float, least: float | None = None, most: float | None = None) -> Iterator[Increment]:
         """Increments of t up to `end`, beginning with `first`. An increment that an RVE refuses, or that does not converge,
         is halved, or cut as the RVE says, down to `least` (first/64); easy ones let the next grow up to `most` (first)."""
         least, most = first / 64 if least is None else least, first if most is None else most
         dt = self.dt or min(first, most)
+        self.forms.set_time(self.t)  # compiles the forms, outside of the seconds of an increment
         while self.t < end * (1 - 1e-12):
             refused, begun = 0, time.perf_counter()
             while True:
