@@ -13,7 +13,7 @@ CASES = {"biaxial": "a block to a band of shear", "footing": "a strip footing be
 
 def main(words: list[str]) -> int:
     comm = MPI.COMM_WORLD
-    logging.getLogger().setLevel(logging.ERROR)  # compilers of forms report each of their calls
+    logging.disable(logging.INFO)  # the compiler of forms reports each of its calls
     warnings.simplefilter("ignore", ResourceWarning)
     listed = "\n".join(f"  {name:10}{text}" for name, text in CASES.items())
     usage = (f"usage: python3 -m rvelab.fenicsx CASE [options]; CASE --help lists its options\n{listed}\n"

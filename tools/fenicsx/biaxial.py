@@ -60,5 +60,5 @@ def main(words, comm):
     strain = tensors.polar(material.F)[1] if material.finite else tensors.symmetric(material.gradient(0))
     angle, share = band(material, strain)
     cases.tell(comm, f"peak load ratio {ratio[peak]:.3f} at {t[peak]:.2%}, at the end {ratio[-1]:.3f}; phi {phi:.1f}, psi {psi:.1f} degrees",
-               f"band at {angle:.0f} degrees to the horizontal in {share:.0%} of the points; Coulomb {45 + phi / 2:.0f}, "
+               "no band" if np.isnan(angle) else f"band at {angle:.0f} degrees to the horizontal in {share:.0%} of the points; Coulomb {45 + phi / 2:.0f}, "
                f"Roscoe {45 + psi / 2:.0f}, Arthur {45 + (phi + psi) / 4:.0f}")

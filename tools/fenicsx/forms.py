@@ -34,7 +34,7 @@ class Forms:
             raise ValueError(f"component is {component}; allowed: 0 to {self.material.d - 1}")
         nodes, factor = self._located(where, at), 1.0
         if profile is not None:
-            factor = np.asarray(profile(self.space.tabulate_dof_coordinates()[nodes].T), float)
+            factor = np.asarray(profile(self._nodes()[nodes].T), float)
         self._fixed.append((nodes * self.blocks + component, value, factor))
 
     def pressure(self, where: Where, value: Any) -> None:
@@ -54,6 +54,14 @@ class Forms:
         entities = compat.locate(self.mesh, dimension, where)
         self._expect(len(entities), at)
         return fem.locate_dofs_topological(self.space, dimension, entities)
+
+    def _nodes(self) -> np.ndarray:
+        """(n, 3) m of the nodes of this rank."""
+        try:
+            return self.space.tabulate_dof_coordinates()
+        except RuntimeError:
+            raise ValueError("profile and along need nodes with a place, which quadrilaterals and hexahedra of degree 2 lack "
+                             "(their middles are means of edges): take degree 1, or triangles") from None
 
     def _expect(self, found: int, what: str) -> None:
         if self.mesh.comm.allreduce(found) == 0:
@@ -165,7 +173,7 @@ class Forms:
         nodes = nodes[nodes * self.blocks < self.owned]
         force = sum(self.forces()).reshape(-1, self.blocks)[nodes]
         if along is not None:
-            return self.mesh.comm.allreduce(float(np.sum(force.T * along(self.space.tabulate_dof_coordinates()[nodes].T))))
+            return self.mesh.comm.allreduce(float(np.sum(force.T * along(self._nodes()[nodes].T))))
         return np.array([self.mesh.comm.allreduce(float(each), MPI.SUM) for each in force.sum(axis=0)])
 
 

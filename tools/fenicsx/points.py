@@ -115,7 +115,11 @@ class Points:
         """The states of a checkpoint, into points without an RVE or with one on this rank."""
         self.F = F.copy()
         for k, snapshot in enumerate(snapshots):
-            if snapshot is not None:
+            if snapshot is None:
+                if self.home[k] >= 0:
+                    self.pool.release([self.ids[k]])
+                    self.home[k], self.ids[k] = -1, 0
+            else:
                 if self.home[k] < 0:
                     self.make([k])
                 self.pool.restore(self.ids[k], snapshot)
