@@ -74,15 +74,17 @@ class Cases(unittest.TestCase):
         self.assertAlmostEqual(found["pressure_ratio"][0], 1, delta=0.01)
 
     def test_triaxial_with_smooth_plates_is_the_test_of_its_specimen(self):
-        said = case("triaxial", "--grains", "60", "--elements", "1", "--to", "0.002", "--frames", "0", "--keep", "0", "--smooth")
+        said = case("triaxial", "--grains", "60", "--elements", "1", "--to", "0.002", "--frames", "0", "--keep", "0",
+                    "--smooth")
         load, alone = map(float, re.search(r"at the end ([\d.]+); .* at that strain ([\d.]+)", said).groups())
         self.assertAlmostEqual(load / alone, 1, delta=0.05)
 
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
         self.assertIn("there is no file none.h5", case("biaxial", "--specimens", "none.h5", code=2))
-        self.assertIn("no checkpoint was made there", case("biaxial", "--specimens", stand_in.specimen(), "--resume", "-o", "new", code=2))
-        self.assertIn("tolerance is 2; allowed: 1e-6 to 0.1", case("wall", "--tolerance", "2", "--specimens", stand_in.specimen(), code=2))
+        with_file = ("--specimens", stand_in.specimen())
+        self.assertIn("no checkpoint was made there", case("biaxial", *with_file, "--resume", "-o", "new", code=2))
+        self.assertIn("tolerance is 2; allowed: 1e-6 to 0.1", case("wall", *with_file, "--tolerance", "2", code=2))
         self.assertIn("usage", case("--help"))
 
 

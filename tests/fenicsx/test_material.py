@@ -146,7 +146,8 @@ class Average(unittest.TestCase):
             material.update()
             beside = k * size * np.cos(wave * material.x[:, 0]) * (1 - 1 / (1 + (length * wave) ** 2))
             more = material.values()[0] - material.sigma
-            np.testing.assert_allclose(more[:, 1, 1], share * C[1, 1, 0, 0] * beside, atol=0.06 * size * C[1, 1, 0, 0] * share * k)
+            scale = share * C[1, 1, 0, 0]
+            np.testing.assert_allclose(more[:, 1, 1], scale * beside, atol=0.06 * size * scale * k)
             material.commit()
         before = material.values()[0] - material.sigma
         move(material, size * np.eye(2))

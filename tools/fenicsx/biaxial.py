@@ -1,11 +1,11 @@
-"""A block 1 m wide and 2 m high is compressed between plates under a lateral pressure, until a band of shear runs through it.
+"""A block 1 m wide and 2 m high is compressed between plates under a lateral pressure, until a band of shear runs
+through it.
 
-Points draw from several specimens, so that the block has weak spots; with --rough the plates hold its ends. Load parameter:
-axial strain. The block and its strains are those of Guo and Zhao (2014, IJNME 99, 789), who used 400 discs for each point.
-At the end the angle of the band is printed beside those of Coulomb (45 + phi/2), Roscoe (45 + psi/2) and Arthur
-(45 + (phi + psi)/4), by phi and psi of the block's own points."""
+Points draw from several specimens, so that the block has weak spots; with --rough the plates hold its ends. Load
+parameter: axial strain. The block and its strains are those of Guo and Zhao (2014, IJNME 99, 789), who used 400 discs
+for each point. At the end the angle of the band is printed beside those of Coulomb (45 + phi/2), Roscoe (45 + psi/2)
+and Arthur (45 + (phi + psi)/4), by phi and psi of the block's own points."""
 import numpy as np
-from dolfinx import mesh
 
 from . import cases, tensors
 from .solver import Solver
@@ -14,8 +14,8 @@ WIDTH, HEIGHT = 1.0, 2.0
 
 
 def band(material, strain):
-    """Angle of the band to the horizontal, degrees, and the share of points in it: the long axis of the points that shear
-    more than the mean by a standard deviation."""
+    """Angle of the band to the horizontal, degrees, and the share of points in it: the long axis of the points that
+    shear more than the mean by a standard deviation."""
     comm = material.mesh.comm
     shear = np.concatenate(comm.allgather(2 * tensors.deviator(strain)))
     x = np.concatenate(comm.allgather(material.x[:, :2]))
@@ -32,7 +32,7 @@ def main(words, comm):
     parser.add_argument("--pressure", type=float, default=100e3, metavar="PA", help="lateral (default: 100e3)")
     parser.add_argument("--rough", action="store_true", help="plates hold the ends of the block")
     o = parser.parse_args(words)
-    body = mesh.create_rectangle(comm, [(0, 0), (WIDTH, HEIGHT)], (o.elements, 2 * o.elements), mesh.CellType.quadrilateral)
+    body = cases.rectangle(comm, np.linspace(0, WIDTH, o.elements + 1), np.linspace(0, HEIGHT, 2 * o.elements + 1))
     material = cases.material(o, comm, body)
     solver = Solver(material)
     bottom, top = (lambda x: np.isclose(x[1], 0)), (lambda x: np.isclose(x[1], HEIGHT))
@@ -59,6 +59,7 @@ def main(words, comm):
     psi = np.degrees(np.arcsin(np.clip(rate / (2 + rate), -1, 1)))  # plane strain: dV/d1 = 2 sin/(1 - sin)
     strain = tensors.polar(material.F)[1] if material.finite else tensors.symmetric(material.gradient(0))
     angle, share = band(material, strain)
-    cases.tell(comm, f"peak load ratio {ratio[peak]:.3f} at {t[peak]:.2%}, at the end {ratio[-1]:.3f}; phi {phi:.1f}, psi {psi:.1f} degrees",
-               "no band" if np.isnan(angle) else f"band at {angle:.0f} degrees to the horizontal in {share:.0%} of the points; Coulomb {45 + phi / 2:.0f}, "
-               f"Roscoe {45 + psi / 2:.0f}, Arthur {45 + (phi + psi) / 4:.0f}")
+    cases.tell(comm, f"peak load ratio {ratio[peak]:.3f} at {t[peak]:.2%}, at the end {ratio[-1]:.3f}; "
+               f"phi {phi:.1f}, psi {psi:.1f} degrees", "no band" if np.isnan(angle) else
+               f"band at {angle:.0f} degrees to the horizontal in {share:.0%} of the points; "
+               f"Coulomb {45 + phi / 2:.0f}, Roscoe {45 + psi / 2:.0f}, Arthur {45 + (phi + psi) / 4:.0f}")

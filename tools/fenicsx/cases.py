@@ -24,22 +24,22 @@ def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
     add = made.add_argument
     add("-o", "--output", type=Path, default=Path(name), metavar="FOLDER", help="default: the name of the case")
-    add("--specimens", nargs="+", metavar="FILE", help="specimen files, drawn for each point; default: packed by --recipe")
+    add("--specimens", nargs="+", metavar="FILE", help="files, drawn for each point; default: packed by --recipe")
     add("--recipe", default=defaults["recipe"], help="of `rvelab protocols` (default: %(default)s)")
     add("--grains", type=int, default=defaults["grains"], help="in each specimen (default: %(default)s)")
     add("--draws", type=int, default=defaults["draws"], help="number of specimens (default: %(default)s)")
     add("--elements", type=int, default=defaults["elements"], help="fineness (default: %(default)s)")
     add("--degree", type=int, default=1, choices=(1, 2), help="of the displacement (default: 1)")
     add("--to", type=float, default=defaults["to"], help="load parameter at the end (default: %(default)s)")
-    add("--first", type=float, default=defaults["first"], help="increment to begin with, and the largest (default: %(default)s)")
-    add("--tolerance", type=float, default=1e-3, help="of forces, and of the stresses of RVEs, relative (default: 1e-3)")
+    add("--first", type=float, default=defaults["first"], help="first and largest increment (default: %(default)s)")
+    add("--tolerance", type=float, default=1e-3, help="of forces and of the stresses of RVEs (default: 1e-3)")
     add("--strains", default="finite", choices=("finite", "small"))
-    add("--length", type=float, default=0, metavar="M", help="of the average of strain that gives bands a width; 0: none (default)")
-    add("--stiffening", type=float, default=0.1, help="of strain beside that average, over the elastic stiffness (default: 0.1)")
-    add("--share", type=float, metavar="ERROR", help="of the stress over the pressure, that points may have which share an RVE "
-        "while they are elastic (default: the tolerance); 0: each point has an RVE")
+    add("--length", type=float, default=0, metavar="M", help="gives bands a width; 0: none (default)")
+    add("--stiffening", type=float, default=0.1, help="of strain beside its average over that length (default: 0.1)")
+    add("--share", type=float, metavar="ERROR", help="of the stress over the pressure, that points may have which "
+        "share an RVE while they are elastic (default: the tolerance); 0: each point has an RVE")
     add("--no-balance", action="store_true", help="RVEs stay on the rank of their point")
-    add("--frames", type=int, default=10, metavar="N", help="increments between outputs for ParaView; 0: none (default: 10)")
+    add("--frames", type=int, default=10, metavar="N", help="increments between files for ParaView; 0: none (default: 10)")
     add("--keep", type=int, default=10, metavar="N", help="increments between checkpoints; 0: none (default: 10)")
     add("--resume", action="store_true", help="from the checkpoint in the output folder, on any number of ranks")
     return made
@@ -71,7 +71,8 @@ def specimens(o: Any, comm: Any) -> list[str]:
 
 def material(o: Any, comm: Any, body: Any, **more: Any) -> Material:
     return Material(body, specimens(o, comm), strains=o.strains, degree=o.degree, tolerance=o.tolerance,
-                    share=True if o.share is None else o.share, balance=not o.no_balance, length=o.length, stiffening=o.stiffening, **more)
+                    share=True if o.share is None else o.share, balance=not o.no_balance, length=o.length,
+                    stiffening=o.stiffening, **more)
 
 
 def angles(o: Any, comm: Any, pressures: Sequence[float]) -> tuple[float, float]:
@@ -101,16 +102,18 @@ def graded(fine: int, size: float, count: int, length: float) -> np.ndarray:
     rest, below, above = length - fine * size, 1.0, 10.0
     for _ in range(100):
         ratio = 0.5 * (below + above)
-        below, above = (ratio, above) if size * np.sum(ratio ** np.arange(1, count - fine + 1)) < rest else (below, ratio)
+        short = size * np.sum(ratio ** np.arange(1, count - fine + 1)) < rest
+        below, above = (ratio, above) if short else (below, ratio)
     sizes = np.concatenate([np.full(fine, size), size * ratio ** np.arange(1, count - fine + 1)])
     return np.concatenate([[0.0], np.cumsum(sizes) * length / sizes.sum()])
 
 
 def rectangle(comm: Any, x: np.ndarray, y: np.ndarray) -> Any:
     """Quadrilaterals between these coordinates of nodes."""
-    made = mesh.create_rectangle(comm, [(0, 0), (len(x) - 1, len(y) - 1)], (len(x) - 1, len(y) - 1), mesh.CellType.quadrilateral)
-    nodes = made.geometry.x
-    nodes[:, 0], nodes[:, 1] = np.interp(nodes[:, 0], np.arange(len(x)), x), np.interp(nodes[:, 1], np.arange(len(y)), y)
+    n = len(x) - 1, len(y) - 1
+    made = mesh.create_rectangle(comm, [(0, 0), n], n, mesh.CellType.quadrilateral)
+    for k, places in enumerate((x, y)):
+        made.geometry.x[:, k] = np.interp(made.geometry.x[:, k], np.arange(len(places)), places)
     return made
 
 
@@ -123,8 +126,10 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
     if o.resume:
         load(solver, o.output / "checkpoint")
         with open(curve, newline="") as file:
-            rows = [list(map(float, each)) for each in list(csv.reader(file))[1:] if float(each[0]) <= solver.t * (1 + 1e-9)]
-    fields = Output(solver.material, o.output / ("fields" if not o.resume else f"fields_from_{solver.t:.4g}")) if o.frames else None
+            rows = [list(map(float, each)) for each in list(csv.reader(file))[1:]]
+        rows = [each for each in rows if each[0] <= solver.t * (1 + 1e-9)]
+    folder = o.output / (f"fields_from_{solver.t:.4g}" if o.resume else "fields")
+    fields = Output(solver.material, folder) if o.frames else None
     _print(first, f"{len(rows)} rows of the run before" if o.resume else "", "  ".join(f"{name:>12}" for name in names),
            "  iterations  residual  RVEs")
     try:

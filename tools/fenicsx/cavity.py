@@ -1,9 +1,11 @@
-"""A cylindrical cavity of radius 1 m is expanded in an infinite soil under an isotropic pressure: a quarter, to radius 15 m.
+"""A cylindrical cavity of radius 1 m is expanded in an infinite soil under an isotropic pressure: a quarter, to radius
+15 m.
 
-Load parameter: displacement of its wall over the radius. Beside it: the pressure p0 + 2 G u/a of an elastic soil, with G of
-the specimens' own tangent; the pressure p0 (1 + sin phi) at which a soil of friction angle phi begins to yield; and behind it
-the slope d ln p/d ln u = (1 + sin psi) sin phi/(1 + sin phi) of Hughes, Wroth and Windle (1977, Geotechnique 27, 455; formulas
-from memory). phi is that of the same specimens in biaxial tests; psi is taken as 0 and as phi."""
+Load parameter: displacement of its wall over the radius. Beside it: the pressure p0 + 2 G u/a of an elastic soil, with
+G of the specimens' own tangent; the pressure p0 (1 + sin phi) at which a soil of friction angle phi begins to yield;
+and behind it the slope d ln p/d ln u = (1 + sin psi) sin phi/(1 + sin phi) of Hughes, Wroth and Windle (1977,
+Geotechnique 27, 455; formulas from memory). phi is that of the same specimens in biaxial tests; psi is taken as 0 and
+as phi."""
 import numpy as np
 
 from . import cases
@@ -33,7 +35,8 @@ def main(words, comm):
     solver.pressure(lambda x: distance(x) > OUTER * chord, o.pressure)
     # The shear modulus of the specimens' tangents: its mean over all directions.
     C = [each.stiffness for part in comm.allgather(list(material.points.shared.values())) for each in part]
-    modulus = np.mean([0.5 * c[0, 1, 0, 1] + 0.125 * (c[0, 0, 0, 0] + c[1, 1, 1, 1] - c[0, 0, 1, 1] - c[1, 1, 0, 0]) for c in C])
+    modulus = np.mean([0.5 * c[0, 1, 0, 1] + 0.125 * (c[0, 0, 0, 0] + c[1, 1, 1, 1] - c[0, 0, 1, 1] - c[1, 1, 0, 0])
+                       for c in C])
 
     edge = n * np.sin(np.pi / 2 / n) * RADIUS  # radial forces of the nodes of n chords under a pressure of 1
 
@@ -47,5 +50,6 @@ def main(words, comm):
     sine, t = np.sin(np.radians(phi)), found["t"]
     late = t > 0.5 * t[-1]
     slope = np.polyfit(np.log(t[late]), np.log(found["pressure_ratio"][late]), 1)[0] if late.sum() > 2 else np.nan
-    cases.tell(comm, f"pressure at the end {found['pressure_ratio'][-1]:.3f} p0; yield begins at {1 + sine:.3f} p0 by {phi:.1f} degrees",
-               f"slope d ln p/d ln u of the second half {slope:.3f}; by the formula {sine / (1 + sine):.3f} (psi 0) to {sine:.3f} (psi = phi)")
+    cases.tell(comm, f"pressure at the end {found['pressure_ratio'][-1]:.3f} p0; yield begins at {1 + sine:.3f} p0 by "
+               f"{phi:.1f} degrees", f"slope d ln p/d ln u of the second half {slope:.3f}; by the formula "
+               f"{sine / (1 + sine):.3f} (psi 0) to {sine:.3f} (psi = phi)")

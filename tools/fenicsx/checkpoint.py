@@ -1,8 +1,8 @@
 """Checkpoints of the host and of its RVEs, in one call, for any number of ranks.
 
-A folder holds pool files, one of each rank that wrote it (tools/manual/pages/file_format.md), and host.npz, which names them: arrays
-in the order of the points, whatever their ranks. host.npz is replaced last, so that a run that is killed leaves the
-checkpoint before it."""
+A folder holds pool files, one of each rank that wrote it (tools/manual/pages/file_format.md), and host.npz, which
+names them: arrays in the order of the points, whatever their ranks. host.npz is replaced last, so that a run that is
+killed leaves the checkpoint before it."""
 from __future__ import annotations
 
 import json
@@ -44,9 +44,10 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
         return
     whole = {name: np.concatenate([part[name] for part in parts]) for name in mine}
     by_number, by_cell = np.argsort(whole["numbers"]), np.argsort(whole["cells"])
-    about = dict(format=FORMAT, generation=generation, ranks=comm.size, t=solver.t, dt=solver.dt, last_dt=solver._last_dt,
+    about = dict(format=FORMAT, generation=generation, t=solver.t, dt=solver.dt, last_dt=solver._last_dt,
                  points=len(by_number), cells=len(by_cell), dimension=d, version=rvelab.__version__)
-    arrays = {name: whole[name][by_number] for name in PER_POINT} | {name: whole[name][by_cell] for name in ("u", "last")}
+    arrays = {name: whole[name][by_number] for name in PER_POINT}
+    arrays |= {name: whole[name][by_cell] for name in ("u", "last")}
     with open(folder / "host.part", "wb") as file:
         np.savez(file, about=json.dumps(about), **arrays)
         file.flush()
@@ -59,13 +60,14 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
 
 
 def load(solver: Solver, folder: str | os.PathLike[str]) -> None:
-    """Collective. Mesh, specimens, constraints and loads are those of the program; state and time those of the checkpoint."""
+    """Collective. Mesh, specimens, constraints and loads are those of the program, state and time those of the
+    checkpoint."""
     material, comm, folder = solver.material, solver.material.mesh.comm, Path(folder)
     about, arrays = _host(folder)
     points, d, total = material.points, material.d, comm.allreduce(len(material.numbers))
     if (about["points"], about["dimension"]) != (total, d):
-        raise ValueError(f"{folder} holds {about['points']} points in {about['dimension']}D, and the mesh has {total} in {d}D: "
-                         "a checkpoint is for the mesh and the elements that it was made with")
+        raise ValueError(f"{folder} holds {about['points']} points in {about['dimension']}D, and the mesh has {total} "
+                         f"in {d}D: a checkpoint is for the mesh and the elements that it was made with")
     mine = {name: arrays[name][material.numbers] for name in PER_POINT}
     snapshots: list[bytes | None] = [None] * len(material.numbers)
     for rank in sorted(set(mine["home"][mine["home"] >= 0].tolist())):
@@ -81,7 +83,8 @@ def load(solver: Solver, folder: str | os.PathLike[str]) -> None:
         function.x.scatter_forward()
     solver._last = material.du.x.array.copy() if about["last_dt"] > 0 else None
     material.du.x.array[:] = 0
-    material.sigma, material.error, material.F, material.beside = (mine[name] for name in ("sigma", "error", "F", "beside"))
+    for name in ("sigma", "error", "F", "beside"):
+        setattr(material, name, mine[name])
     material.set_values(mine["stress"], mine["tangent"])
     material.keep()
     solver.forms.t = about["t"]

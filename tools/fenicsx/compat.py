@@ -1,5 +1,5 @@
-"""The interface of dolfinx in the one form that this package uses: that of 0.5 (Debian 12), and that of 0.8 and later as its
-documentation and source have it, where elements come from basix.ufl and spaces from fem.functionspace."""
+"""The interface of dolfinx in the one form that this package uses: that of 0.5 (Debian 12), and that of 0.8 and later
+as its documentation and source have it, where elements come from basix.ufl and spaces from fem.functionspace."""
 from __future__ import annotations
 
 from typing import Any, Callable
@@ -23,8 +23,8 @@ def cell_name(mesh: Any) -> str:
 
 
 def lagrange(mesh: Any, degree: int, shape: tuple[int, ...]) -> Any:
-    """The space of Lagrange elements; on quadrilaterals and hexahedra degree 2 means serendipity (8 or 20 nodes). Degree 0
-    is constant in each cell."""
+    """The space of Lagrange elements; on quadrilaterals and hexahedra degree 2 means serendipity (8 or 20 nodes).
+    Degree 0 is constant in each cell."""
     family = "DG" if degree == 0 else "S" if degree == 2 and cell_name(mesh) in QUADRILATERALS else "Lagrange"
     if OLD:
         element = ufl.FiniteElement(family, mesh.ufl_cell(), degree)
@@ -33,7 +33,8 @@ def lagrange(mesh: Any, degree: int, shape: tuple[int, ...]) -> Any:
         return fem.FunctionSpace(mesh, element)
     if family == "S":
         element = basix.ufl.element(basix.ElementFamily.serendipity, cell_name(mesh), degree, shape=shape or None,
-                                    lagrange_variant=basix.LagrangeVariant.legendre, dpc_variant=basix.DPCVariant.legendre)
+                                    lagrange_variant=basix.LagrangeVariant.legendre,
+                                    dpc_variant=basix.DPCVariant.legendre)
         return fem.functionspace(mesh, element)
     return fem.functionspace(mesh, (family, degree, shape) if shape else (family, degree))
 
@@ -68,8 +69,7 @@ def cell_corners(mesh: Any, cells: int) -> np.ndarray:
 
 def push_forward(mesh: Any, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """(points, dimension) m of points of the reference cell, in the cell of these corners."""
-    cmap = mesh.geometry.cmaps[0] if hasattr(mesh.geometry, "cmaps") and not hasattr(mesh.geometry, "cmap") else mesh.geometry.cmap
-    return cmap.push_forward(points, np.ascontiguousarray(corners[:, :mesh.geometry.dim]))
+    return mesh.geometry.cmap.push_forward(points, np.ascontiguousarray(corners[:, :mesh.geometry.dim]))
 
 
 def evaluate(expression: Any, mesh: Any, cells: np.ndarray) -> np.ndarray:
@@ -77,8 +77,8 @@ def evaluate(expression: Any, mesh: Any, cells: np.ndarray) -> np.ndarray:
 
 
 def locate(mesh: Any, dimension: int, marker: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Entities of the boundary with the marker true at all nodes and at the middle: a facet between two marked sides is in
-    none of them."""
+    """Entities of the boundary with the marker true at all nodes and at the middle: a facet between two marked sides is
+    in none of them."""
     found = meshes.locate_entities_boundary(mesh, dimension, marker)
     if len(found) == 0 or dimension == 0:
         return found

@@ -1,4 +1,5 @@
-"""Specimens of the points of a mesh, and families of them: one specimen brought to the stresses that points begin with."""
+"""Specimens of the points of a mesh, and families of them: one specimen brought to the stresses that points begin
+with."""
 from __future__ import annotations
 
 import os

@@ -60,8 +60,8 @@ class Forms:
         try:
             return self.space.tabulate_dof_coordinates()
         except RuntimeError:
-            raise ValueError("profile and along need nodes with a place, which quadrilaterals and hexahedra of degree 2 lack "
-                             "(their middles are means of edges): take degree 1, or triangles") from None
+            raise ValueError("profile and along need nodes with a place, which quadrilaterals and hexahedra of degree 2 "
+                             "lack (their middles are means of edges): take degree 1, or triangles") from None
 
     def _expect(self, found: int, what: str) -> None:
         if self.mesh.comm.allreduce(found) == 0:
@@ -103,8 +103,8 @@ class Forms:
         if self._weight is not None:
             external = -ufl.dot(self._weight, test) * material.dx
         if self._pressures:
-            normal, measure = ufl.FacetNormal(self.mesh), ufl.Measure(
-                "ds", domain=self.mesh, subdomain_data=compat.facet_tags(self.mesh, [each[0] for each in self._pressures]))
+            tags = compat.facet_tags(self.mesh, [each[0] for each in self._pressures])
+            normal, measure = ufl.FacetNormal(self.mesh), ufl.Measure("ds", domain=self.mesh, subdomain_data=tags)
             for tag, (_, _, constant) in enumerate(self._pressures, 1):
                 area = normal
                 if material.finite:

@@ -16,18 +16,19 @@ from .points import Points
 class Material:
     """Stress and tangent of the quadrature points of a mesh, plane strain (discs, ellipses) or 3D.
 
-    specimens    a specimen file for all points; a list, from which each point draws one; {tag: one of both} by cell_tags
+    specimens    a specimen file for all points; a list, from which each draws one; {tag: one of both} by cell_tags
     strains      "finite": updated Lagrangian; the increment dH = F_new F_old^-1 - 1 with its rotation goes to the RVEs,
-                 stress and tangent are the Cauchy stress and that of the present state, with the geometric stiffness. The
-                 integrals are written on the first mesh, which gives the same forces. "small": dH is the symmetric gradient
+                 stress and tangent are the Cauchy stress and that of the present state, with the geometric stiffness.
+                 The integrals are written on the first mesh, which gives the same forces. "small": dH is the symmetric
+                 gradient
     degree       of the displacement: 1, or 2 (8 nodes in a quadrilateral, 20 in a hexahedron)
     tolerance    of the host's forces and of the RVEs' stresses, over the pressure (Solver)
-    share        points that saw elastic strain alone share one RVE, as long as its tangent errs by less than this share of
-                 the pressure; True: the tolerance; 0: each point has its own from the beginning
+    share        points that saw elastic strain alone share one RVE, as long as its tangent errs by less than this share
+                 of the pressure; True: the tolerance; 0: each point has its own from the beginning
     initial      function of x (n, 3): stresses (n, d, d) Pa, tension positive, that the specimens are brought to; none:
                  theirs. For soil under its weight: geostatic()
-    length       m; 0: none. Stiffness `stiffening` (of the elastic one) of the strain beside its average over this length, which
-                 gives bands a width (nonlocal_average.py)
+    length       m; 0: none. Stiffness `stiffening` (of the elastic one) of the strain beside its average over this
+                 length, which gives bands a width (nonlocal_average.py)
     balance      RVEs move between ranks by their measured cost"""
 
     def __init__(self, mesh: Any, specimens: Sources, *, cell_tags: Any = None, strains: str = "finite", degree: int = 1,
@@ -71,7 +72,8 @@ class Material:
             of_cells[cell_tags.indices[owned]] = cell_tags.values[owned]
             tags = np.repeat(of_cells, nq)
         group, family = members(chosen_sources(specimens, tags, self.numbers), sigma, d, options)
-        self.points = Points(mesh.comm, d, group, family, options, tolerance if share is True else float(share), balance, sigma)
+        share = tolerance if share is True else float(share)
+        self.points = Points(mesh.comm, d, group, family, options, share, balance, sigma)
         self.stiffening, self.C = stiffening, None
         self.average = Average(mesh, reference, self.dx, quadrature_degree, length) if length > 0 else None
         n = len(self.numbers)
@@ -83,8 +85,8 @@ class Material:
         drawn = tensors.symmetric(np.reshape(draws, (-1, d, d)))
         self._directions = drawn / np.linalg.norm(drawn, axis=(1, 2))[:, None, None]
         if self.update() < 1:
-            raise ValueError("an RVE refuses its initial state: the stresses of `initial` are beyond its strength, or the "
-                             "specimen is not at rest")
+            raise ValueError("an RVE refuses its initial state: the stresses of `initial` are beyond its strength, or "
+                             "the specimen is not at rest")
         self.commit()
 
     def gradient(self, k: int) -> np.ndarray:
@@ -92,8 +94,8 @@ class Material:
         return compat.evaluate(self._gradients[k], self.mesh, self.cells).reshape(-1, self.d, self.d)
 
     def update(self) -> float:
-        """Collective. Trials with the increment du, and their stresses and tangents in the forms. 1; less: an RVE refused,
-        and this is the share of the increment to try."""
+        """Collective. Trials with the increment du, and their stresses and tangents in the forms. 1; less: an RVE
+        refused, and this is the share of the increment to try."""
         d, increment = self.d, self.gradient(1)
         if self.finite:
             self._new = np.eye(d) + self.gradient(0) + increment
@@ -117,7 +119,8 @@ class Material:
         spin = dH - strain
         self._new_beside = self.beside + spin @ self.beside - self.beside @ spin + strain - self.average(strain)
         self.C = tangent.copy() if self.C is None else self.C
-        return stress + self.stiffening * np.einsum("nijkl,nkl->nij", self.C, self._new_beside), tangent + self.stiffening * self.C
+        more = self.stiffening * self.C
+        return stress + np.einsum("nijkl,nkl->nij", more, self._new_beside), tangent + more
 
     def commit(self) -> None:
         """Collective. The last trial becomes the state, and u + du the displacement."""
@@ -150,8 +153,8 @@ class Material:
             self.tangent.x.array.reshape(-1, d ** 4)[self._tangent_dofs] = tangent.reshape(-1, d ** 4)
 
     def with_errors(self, assemble: Callable[[], Any]) -> Any:
-        """What `assemble` returns if each stress is its expected error, half of its estimate, in a direction drawn by the
-        number of the point: the forces that the RVEs cannot resolve."""
+        """What `assemble` returns if each stress is its expected error, half of its estimate, in a direction drawn by
+        the number of the point: the forces that the RVEs cannot resolve."""
         held = self.stress.x.array.copy()
         self.set_values(0.5 * self.error[:, None, None] * self._directions)
         found = assemble()
@@ -159,12 +162,14 @@ class Material:
         return found
 
 
-def geostatic(surface: float, unit_weight: float, at_rest: float, pressure: float, d: int = 2) -> Callable[[np.ndarray], np.ndarray]:
-    """Stresses of level ground: vertical -(pressure + unit_weight depth), horizontal at_rest times that. surface: height of
-    the ground, m; unit_weight: N/m^3; pressure on the ground: Pa, more than zero, since grains without stress have no
-    stiffness."""
+def geostatic(surface: float, unit_weight: float, at_rest: float, pressure: float,
+              d: int = 2) -> Callable[[np.ndarray], np.ndarray]:
+    """Stresses of level ground: vertical -(pressure + unit_weight depth), horizontal at_rest times that. surface:
+    height of the ground, m; unit_weight: N/m^3; pressure on the ground: Pa, more than zero, since grains without stress
+    have no stiffness."""
     if not pressure > 0:
-        raise ValueError(f"pressure on the ground is {pressure:g} Pa; allowed: more than 0 (grains without stress have no stiffness)")
+        raise ValueError(f"pressure on the ground is {pressure:g} Pa; allowed: more than 0 (grains without stress have "
+                         "no stiffness)")
 
     def sigma(x: np.ndarray) -> np.ndarray:
         vertical = -(pressure + unit_weight * (surface - x[:, d - 1]))

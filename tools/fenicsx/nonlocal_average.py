@@ -1,14 +1,14 @@
-"""A width of bands that is not that of the elements. The RVEs alone have none: where they soften, strain gathers in one row of
-elements. With a length l the stress gets a term of the strain beside its average,
+"""A width of bands that is not that of the elements. The RVEs alone have none: where they soften, strain gathers in
+one row of elements. With a length l the stress gets a term of the strain beside its average,
 
     sigma = sigma of the RVE + h C : (e - a),    a - l^2 laplace(a) = e in the mesh, no flux through its boundary
 
-with e the strain increments' sum and C the tangent of the first state. The average is solved on the nodes (linear elements)
-with one factorisation for all increments. A uniform strain stays as it is; waves shorter than l are stiffened by up to h C,
-so that bands have a width of some l as long as h C is more than the softening. The averaged equation is that of Peerlings et
-al. (1996, IJNME 39, 3391), the stress that of the micromorphic approach of Forest (2009, J. Eng. Mech. 135, 117; both from
-memory). To give the averaged increment itself to the RVEs does not work: where neighbouring RVEs differ, no displacement of a
-wave shorter than l can balance their stresses."""
+with e the strain increments' sum and C the tangent of the first state. The average is solved on the nodes (linear
+elements) with one factorisation for all increments. A uniform strain stays as it is; waves shorter than l are
+stiffened by up to h C, so that bands have a width of some l as long as h C is more than the softening. The averaged
+equation is that of Peerlings et al. (1996, IJNME 39, 3391), the stress that of the micromorphic approach of Forest
+(2009, J. Eng. Mech. 135, 117; both from memory). To give the averaged increment itself to the RVEs does not work:
+where neighbouring RVEs differ, no displacement of a wave shorter than l can balance their stresses."""
 from __future__ import annotations
 
 from typing import Any

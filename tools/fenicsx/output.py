@@ -1,5 +1,5 @@
-"""Fields of a run for ParaView: cells.xdmf (displacements of nodes, means of cells) and points.xdmf (the quadrature points,
-where they are now, with the number of their RVE)."""
+"""Fields of a run for ParaView: cells.xdmf (displacements of nodes, means of cells) and points.xdmf (the quadrature
+points, where they are now, with the number of their RVE)."""
 from __future__ import annotations
 
 import os
@@ -20,8 +20,9 @@ def fields(material: Material) -> dict[str, np.ndarray]:
     points, d = material.points, material.d
     strain = tensors.polar(material.F)[1] if material.finite else tensors.symmetric(material.gradient(0))
     found = {f"stress_{pair}_Pa": material.sigma[:, "xyz".index(pair[0]), "xyz".index(pair[1])] for pair in _PAIRS[d]}
-    found |= dict(pressure_Pa=-np.trace(material.sigma, axis1=1, axis2=2) / d, deviator_Pa=tensors.deviator(material.sigma),
-                  volumetric_strain=np.linalg.det(np.eye(d) + strain) - 1, shear_strain=2 * tensors.deviator(strain))
+    found |= dict(pressure_Pa=-np.trace(material.sigma, axis1=1, axis2=2) / d,
+                  deviator_Pa=tensors.deviator(material.sigma), shear_strain=2 * tensors.deviator(strain),
+                  volumetric_strain=np.linalg.det(np.eye(d) + strain) - 1)
     return found | points.info() | dict(error_estimate_Pa=material.error, has_an_rve=points.made.astype(float),
                                         grain_steps=points.work)
 
@@ -64,7 +65,8 @@ class Output:
         """(n, 3) m of the points, from the nodes of their cells by the linear elements that are shown."""
         material, d = self.material, self.material.d
         if not hasattr(self, "expression"):
-            self.expression = fem.Expression(self.shown, compat.quadrature(material.mesh, material.quadrature_degree)[0])
+            reference = compat.quadrature(material.mesh, material.quadrature_degree)[0]
+            self.expression = fem.Expression(self.shown, reference)
         found = np.zeros_like(material.x)
         found[:, :d] = compat.evaluate(self.expression, material.mesh, material.cells).reshape(-1, d)
         return found
@@ -79,14 +81,14 @@ class Output:
                 file[f"{len(self.times)}/{name}"] = values
         self.times.append(t)
         item = lambda k, name, size: (  # noqa: E731
-            f'<DataItem Dimensions="{size}" NumberType="{"Int" if name == "rve" else "Float"}" Precision="8" Format="HDF">'
-            f"points.h5:/{k}/{name}</DataItem>")
+            f'<DataItem Dimensions="{size}" NumberType="{"Int" if name == "rve" else "Float"}" Precision="8" '
+            f'Format="HDF">points.h5:/{k}/{name}</DataItem>')
         grids = []
         for k, time in enumerate(self.times):
             attributes = "".join(f'<Attribute Name="{name}" Center="Node">{item(k, name, len(order))}</Attribute>'
                                  for name in arrays if name != "position")
-            grids.append(f'<Grid Name="points"><Time Value="{time}"/><Topology TopologyType="Polyvertex" NodesPerElement="1" '
-                         f'NumberOfElements="{len(order)}"/><Geometry GeometryType="XYZ">'
+            grids.append(f'<Grid Name="points"><Time Value="{time}"/><Topology TopologyType="Polyvertex" '
+                         f'NodesPerElement="1" NumberOfElements="{len(order)}"/><Geometry GeometryType="XYZ">'
                          f'{item(k, "position", f"{len(order)} 3")}</Geometry>{attributes}</Grid>')
         head = '<?xml version="1.0"?>\n<Xdmf Version="3.0"><Domain><Grid CollectionType="Temporal" GridType="Collection">\n'
         (self.folder / "points.xdmf").write_text(head + "\n".join(grids) + "\n</Grid></Domain></Xdmf>\n")

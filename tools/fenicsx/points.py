@@ -1,5 +1,6 @@
-"""The RVEs of the quadrature points that a rank owns. Points that have seen elastic strain alone share one RVE; the RVEs of
-the others may be on any rank, by their measured cost. It needs numpy, mpi4py and rvelab, and nothing of dolfinx."""
+"""The RVEs of the quadrature points that a rank owns. Points that have seen elastic strain alone share one RVE; the
+RVEs of the others may be on any rank, by their measured cost. It needs numpy, mpi4py and rvelab, and nothing of
+dolfinx."""
 from __future__ import annotations
 
 import warnings

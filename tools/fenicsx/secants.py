@@ -1,12 +1,14 @@
-"""Steps of Newton's method improved by what the steps before it did to the residual. The tangent of a contact network is that
-of contacts that do not slip, so Newton's method with it converges linearly where many slip; secants restore the difference.
+"""Steps of Newton's method improved by what the steps before it did to the residual. The tangent of a contact network
+is that of contacts that do not slip, so Newton's method with it converges linearly where many slip; secants restore
+the difference.
 
 With the last changes dX_k of the displacements and dR_k of the residual, g = argmin |R - sum g_k dR_k|, and
 
     step = -sum g_k dX_k - K^-1 (R - sum g_k dR_k)
 
-This is Anderson's acceleration (1965, J. ACM 12, 547) in its multisecant form (Fang and Saad 2009, Numer. Linear Algebra
-Appl. 16, 197), with the present tangent as the matrix; written down from memory. Without history it is Newton's step."""
+This is Anderson's acceleration (1965, J. ACM 12, 547) in its multisecant form (Fang and Saad 2009, Numer. Linear
+Algebra Appl. 16, 197), with the present tangent as the matrix; written down from memory. Without history it is
+Newton's step."""
 from __future__ import annotations
 
 from typing import Any
@@ -34,6 +36,7 @@ class Secants:
         rows = np.array([change[self.free] for change in self.changes])
         products = self.comm.allreduce(np.column_stack([rows @ rows.T, rows @ residual[self.free]]))
         scale = np.sqrt(np.diag(products[:, :-1]))
-        factors = np.linalg.lstsq(products[:, :-1] / np.outer(scale, scale), products[:, -1] / scale, rcond=1e-8)[0] / scale
+        matrix, right = products[:, :-1] / np.outer(scale, scale), products[:, -1] / scale
+        factors = np.linalg.lstsq(matrix, right, rcond=1e-8)[0] / scale
         move = -sum(factor * each for factor, each in zip(factors, self.moves))
         return move, residual - sum(factor * each for factor, each in zip(factors, self.changes))

@@ -12,8 +12,8 @@ SMALLEST, LARGEST = 1e-6, 1e-3  # strains between which the range is looked for
 
 
 class Shared:
-    """An RVE at the state of a member of the family, and the strains for which sigma + C : eps stands for its answer: where
-    it errs by less than `share` p. They are measured by trials along each component, forwards and backwards."""
+    """An RVE at the state of a member of the family, and the strains for which sigma + C : eps stands for its answer:
+    where it errs by less than `share` p. They are measured by trials along each component, forwards and backwards."""
 
     def __init__(self, pool: rvelab.Pool, d: int, snapshot: bytes, share: float) -> None:
         self.d = d
@@ -32,7 +32,8 @@ class Shared:
     def _range(self, pool: rvelab.Pool) -> float:
         """Frobenius norm of the largest strain of a doubling series at which all directions are within the tolerance."""
         d, reached, size = self.d, 0.0, SMALLEST
-        directions = [np.outer(one, two) + np.outer(two, one) for k, one in enumerate(np.eye(d)) for two in np.eye(d)[k:]]
+        axes = np.eye(d)
+        directions = [np.outer(one, two) + np.outer(two, one) for k, one in enumerate(axes) for two in axes[k:]]
         directions = np.array([sign * each / np.linalg.norm(each) for each in directions for sign in (1, -1)])
         while size <= LARGEST:
             for strain in size * directions:

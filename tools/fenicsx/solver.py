@@ -69,7 +69,8 @@ class Solver:
         directions (d, n) of the nodes: the sum of the forces along them, a number. Collective."""
         return self.forms.reaction(where, at, along)
 
-    def march(self, end: float, first: float, least: float | None = None, most: float | None = None) -> Iterator[Increment]:
+    def march(self, end: float, first: float, least: float | None = None,
+              most: float | None = None) -> Iterator[Increment]:
         """Increments of t up to `end`, beginning with `first`. An increment that an RVE refuses, or that does not converge,
         is halved, or cut as the RVE says, down to `least` (first/64); easy ones let the next grow up to `most` (first)."""
         least, most = first / 64 if least is None else least, first if most is None else most
@@ -83,9 +84,9 @@ class Solver:
                     break
                 refused, dt = refused + 1, dt * share
                 if dt < least:
-                    raise NotConverged(f"at t = {self.t:.6g} no increment of {least:.3g} or more converges: the body fails under "
-                                       "its loads (prescribe displacements to go on), or the tolerance is below what its "
-                                       "RVEs resolve")
+                    raise NotConverged(f"at t = {self.t:.6g} no increment of {least:.3g} or more converges: the body "
+                                       "fails under its loads (prescribe displacements to go on), or the tolerance is "
+                                       "below what its RVEs resolve")
             done.refused, done.seconds = refused, time.perf_counter() - begun
             if done.iterations <= GROW_BELOW and not refused:
                 dt = min(dt * GROWTH, most)
@@ -130,8 +131,8 @@ class Solver:
         self._last, self._last_dt = array.copy(), dt
         material.commit()
         self.t = start + dt
-        return Increment(self.t, dt, iterations, trials, norm / reference, resolution, norm > self.tolerance * reference,
-                         residuals, 0), 1.0
+        return Increment(self.t, dt, iterations, trials, norm / reference, resolution,
+                         norm > self.tolerance * reference, residuals, 0), 1.0
 
     def _search(self, step: np.ndarray, norm: float) -> tuple[float, int, float]:
         """Adds the step, or the part of it with the least out-of-balance forces where all of it increases them: their norm,

@@ -7,8 +7,10 @@ from . import compat
 from .solver import Solver
 
 SAMPLE = 20  # points without an RVE whose error is measured
-_WARNINGS = {1: "the error estimate was above the tolerance of the RVE", 2: "the RVE was not in equilibrium (it flows or collapses)",
-             3: "the cell was thinner than four mean diameters", 4: "the network had no tangent, and the affine one was used"}
+_WARNINGS = {1: "the error estimate was above the tolerance of the RVE",
+             2: "the RVE was not in equilibrium (it flows or collapses)",
+             3: "the cell was thinner than four mean diameters",
+             4: "the network had no tangent, and the affine one was used"}
 
 
 def sharing(solver: Solver) -> tuple[int, int, float]:
@@ -42,12 +44,13 @@ def summary(solver: Solver) -> list[str]:
              f"{trials / steps:.2f}, increments refused {sum(each.refused for each in history)}",
              f"seconds per increment and RVE {seconds / steps / count:.2e}, grain-steps per increment and RVE "
              f"{work / steps / count:.3g}",
-             f"{len(coarse)} of {steps} increments stopped at what the RVEs resolve, above the tolerance of {solver.tolerance:g}; "
-             f"largest residual over the forces {max(each.residual for each in history):.2g}"]
+             f"{len(coarse)} of {steps} increments stopped at what the RVEs resolve, above the tolerance of "
+             f"{solver.tolerance:g}; largest residual over the forces {max(each.residual for each in history):.2g}"]
     lines.append(f"{unmade} of {count} points never left the elastic range, and shared RVEs"
                  + (f"; largest error of their stress over the pressure {error:.1e}" if unmade else ""))
     if points.spread:
+        off = "" if points.balances else " (switched off)"
         lines.append(f"work of the busiest rank over the mean: mean {np.mean(points.spread):.2f}, largest "
-                     f"{max(points.spread):.2f}; RVEs moved between ranks: {moved}" + ("" if points.balances else " (switched off)"))
+                     f"{max(points.spread):.2f}; RVEs moved between ranks: {moved}{off}")
     lines += [f"{number} trials: {_WARNINGS.get(key, f'status {key}')}" for key, number in warned.items()]
     return lines

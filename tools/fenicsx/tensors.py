@@ -1,6 +1,7 @@
-"""Tensors of many points at once, arrays (n, d, d) and (n, d, d, d, d), d = 2 or 3: strain of a deformation, and the tangent
-of the nodal forces. Pa, tension positive. The formulas are those of updated Lagrangian elements (Belytschko, Liu and Moran,
-Nonlinear Finite Elements, chapter 6; written down from memory and held by finite differences, tests/fenicsx)."""
+"""Tensors of many points at once, arrays (n, d, d) and (n, d, d, d, d), d = 2 or 3: strain of a deformation, and the
+tangent of the nodal forces. Pa, tension positive. The formulas are those of updated Lagrangian elements (Belytschko,
+Liu and Moran, Nonlinear Finite Elements, chapter 6; written down from memory and held by finite differences,
+tests/fenicsx)."""
 from __future__ import annotations
 
 import numpy as np

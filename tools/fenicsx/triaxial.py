@@ -1,7 +1,9 @@
-"""A cylinder of spheres, diameter 1 m and height 2 m, is compressed between rough plates under a lateral pressure: an eighth.
+"""A cylinder of spheres, diameter 1 m and height 2 m, is compressed between rough plates under a lateral pressure: an
+eighth.
 
-Load parameter: axial strain. Rough plates hold the ends, so that the cylinder barrels and its strain is not that of one RVE;
-beside the load stands the stress of the same specimen in a triaxial test of its own, at the same axial strain."""
+Load parameter: axial strain. Rough plates hold the ends, so that the cylinder barrels and its strain is not that of
+one RVE; beside the load stands the stress of the same specimen in a triaxial test of its own, at the same axial
+strain."""
 import warnings
 
 import numpy as np
@@ -20,7 +22,8 @@ def alone(o, comm, file):
     if comm.rank == 0:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            records = rvelab.run("triaxial", file, {"test.pressure_Pa": o.pressure, "stage.compression.to_strain": o.to})
+            settings = {"test.pressure_Pa": o.pressure, "stage.compression.to_strain": o.to}
+            records = rvelab.run("triaxial", file, settings)
         found = np.array(records["strain"]), -np.array(records["stress_Pa"])[:, 2, 2] / o.pressure
     return comm.bcast(found)
 
@@ -56,5 +59,5 @@ def main(words, comm):
 
     found = cases.follow(o, comm, solver, ["load_ratio"], row)
     strain, ratio = alone(o, comm, (o.specimens or cases.specimens(o, comm))[0])
-    cases.tell(comm, f"axial load over the first area and the pressure at the end {found['load_ratio'][-1]:.3f}; axial stress over "
-               f"the pressure of the specimen alone at that strain {np.interp(found['t'][-1], strain, ratio):.3f}")
+    cases.tell(comm, f"axial load over the first area and the pressure at the end {found['load_ratio'][-1]:.3f}; "
+               f"axial stress over the pressure of the specimen alone at that strain {np.interp(found['t'][-1], strain, ratio):.3f}")

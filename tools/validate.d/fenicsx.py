@@ -1,12 +1,13 @@
 """tools/validate fenicsx_biaxial, fenicsx_footing: finite elements of dolfinx with RVEs of 100 discs in their points.
 
-biaxial: the block of `python3 -m rvelab.fenicsx biaxial`, four specimens of pack_dense drawn by its points, to 4 % of strain, over
-three meshes, without and with a length of 0.25 m. Asked: the block is no stronger than the mean of its specimens alone, by their
-peak angles (two degrees below to one above; weak spots lower it); with the length the load at the end is the same on the two
-finer meshes within 3 %; the band lies between Roscoe's and Coulomb's angle to five degrees; the curve of two ranks is that of
-one to 0.1 % of strain, where the grains have not yet magnified the round-off of the solver; three iterations an increment at most.
-footing: `footing`, pack_medium, surcharge 100 kPa, to a settlement of a fifth of the width over three meshes, rough, and smooth on one.
-Asked: the largest pressure lies between the formulas' by the angle at 15 % of strain and by that at the peak of the same specimens.
+biaxial: the block of `python3 -m rvelab.fenicsx biaxial`, four specimens of pack_dense drawn by its points, to 4 % of
+strain, over three meshes, without and with a length of 0.25 m. Asked: the block is no stronger than the mean of its
+specimens alone, by their peak angles (two degrees below to one above; weak spots lower it); with the length the load
+at the end is the same on the two finer meshes within 3 %; the band lies between Roscoe's and Coulomb's angle to five
+degrees; the curve of two ranks is that of one to 0.1 % of strain, where the grains have not yet magnified the
+round-off of the solver; three iterations an increment at most. footing: `footing`, pack_medium, surcharge 100 kPa, to
+a settlement of a fifth of the width over three meshes, rough, and smooth on one. Asked: the largest pressure lies
+between the formulas' by the angle at 15 % of strain and by that at the peak of the same specimens.
 
     fenicsx.py RVELAB WORK RESULTS biaxial|footing"""
 import os
