@@ -17,7 +17,7 @@ stand_in.FOLDER = FOLDER
 
 def case(*words, code=0):
     done = subprocess.run([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", *words], cwd=FOLDER, capture_output=True,
-                          text=True, env={**os.environ, "OMP_NUM_THREADS": "1"}, timeout=200)
+                          text=True, env={**os.environ, "OMP_NUM_THREADS": "1"}, timeout=280)
     if done.returncode != code:
         raise AssertionError(done.stdout + done.stderr)
     return done.stdout if code == 0 else done.stderr

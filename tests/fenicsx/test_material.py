@@ -13,6 +13,7 @@ from mpi4py import MPI
 from rvelab import fenicsx
 from rvelab.fenicsx import compat, tensors
 from rvelab.fenicsx.forms import Forms
+from rvelab.fenicsx.secants import Secants
 
 stand_in.FOLDER = Path(sys.argv.pop(1))
 stand_in.FOLDER.mkdir(parents=True, exist_ok=True)
@@ -217,6 +218,20 @@ class Forces(unittest.TestCase):
         inside, outside = forms.forces()
         self.assertGreater(np.abs(inside).max(), 0.1 * P)
         np.testing.assert_allclose(inside + outside, 0, atol=1e-8 * P)
+
+
+class Steps(unittest.TestCase):
+    def test_secants_solve_a_linear_system_whatever_the_matrix_at_hand(self):
+        """As GMRES does: n unknowns take n + 1 steps, where steps with that matrix alone would diverge."""
+        A, b = np.diag([1.0, 2.0, 5.0, 9.0]) + 0.3, np.array([1.0, -2.0, 0.5, 3.0])
+        secants, x = Secants(MPI.COMM_SELF, np.arange(4)), np.zeros(4)
+        for _ in range(5):
+            residual = A @ x - b
+            move, rest = secants.reduce(residual)
+            step = move - rest / 3
+            x = x + step
+            secants.add(step, A @ x - b - residual)
+        self.assertLess(np.linalg.norm(A @ x - b), 1e-9)
 
 
 class Compatibility(unittest.TestCase):

@@ -26,7 +26,7 @@ def run(ranks, end, *options, dies=False):
     output = FOLDER / "curve.json"
     output.unlink(missing_ok=True)
     done = subprocess.run([MPIRUN, "-np", str(ranks), sys.executable, HERE / "scene.py", FOLDER, output, str(end), *options],
-                          env={**os.environ, **SETTINGS}, capture_output=True, text=True, timeout=200)
+                          env={**os.environ, **SETTINGS}, capture_output=True, text=True, timeout=280)
     if dies:
         assert done.returncode != 0 and not output.exists()
         return None
