@@ -8,6 +8,7 @@ and Arthur (45 + (phi + psi)/4), by phi and psi of the block's own points."""
 import numpy as np
 
 from . import cases, tensors
+from .material import geostatic
 from .solver import Solver
 
 WIDTH, HEIGHT = 1.0, 2.0
@@ -29,11 +30,11 @@ def band(material, strain):
 
 def main(words, comm):
     parser = cases.parser("biaxial", __doc__, recipe="pack_dense", grains=400, draws=4, elements=4, to=0.03, first=5e-4)
-    parser.add_argument("--pressure", type=float, default=100e3, metavar="PA", help="lateral (default: 100e3)")
+    parser.add_argument("--pressure", type=cases.positive, default=100e3, metavar="PA", help="lateral (default: 100e3)")
     parser.add_argument("--rough", action="store_true", help="plates hold the ends of the block")
     o = parser.parse_args(words)
     body = cases.rectangle(comm, np.linspace(0, WIDTH, o.elements + 1), np.linspace(0, HEIGHT, 2 * o.elements + 1))
-    material = cases.material(o, comm, body)
+    material = cases.material(o, comm, body, initial=geostatic(HEIGHT, 0, 1, o.pressure))
     solver = Solver(material)
     bottom, top = (lambda x: np.isclose(x[1], 0)), (lambda x: np.isclose(x[1], HEIGHT))
     solver.fix(bottom, 1)

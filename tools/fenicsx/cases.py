@@ -18,6 +18,21 @@ from .solver import Increment, NotConverged, Solver
 from .summary import summary
 
 
+def positive(text: str) -> float:
+    """Of an option: a number above zero."""
+    value = float(text)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"{text}: allowed are numbers above 0")
+    return value
+
+
+def count(text: str) -> int:
+    """Of an option: a whole number from 1 on."""
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: allowed are whole numbers from 1 on")
+    return int(text)
+
+
 def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
     """Options of a case; defaults: recipe, grains, draws, elements, to, first."""
     made = argparse.ArgumentParser(prog=f"python3 -m rvelab.fenicsx {name}", description=text,
@@ -26,12 +41,12 @@ def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
     add("-o", "--output", type=Path, default=Path(name), metavar="FOLDER", help="default: the name of the case")
     add("--specimens", nargs="+", metavar="FILE", help="files, drawn for each point; default: packed by --recipe")
     add("--recipe", default=defaults["recipe"], help="of `rvelab protocols` (default: %(default)s)")
-    add("--grains", type=int, default=defaults["grains"], help="in each specimen (default: %(default)s)")
-    add("--draws", type=int, default=defaults["draws"], help="number of specimens (default: %(default)s)")
-    add("--elements", type=int, default=defaults["elements"], help="fineness (default: %(default)s)")
+    add("--grains", type=count, default=defaults["grains"], help="in each specimen (default: %(default)s)")
+    add("--draws", type=count, default=defaults["draws"], help="number of specimens (default: %(default)s)")
+    add("--elements", type=count, default=defaults["elements"], help="fineness (default: %(default)s)")
     add("--degree", type=int, default=1, choices=(1, 2), help="of the displacement (default: 1)")
-    add("--to", type=float, default=defaults["to"], help="load parameter at the end (default: %(default)s)")
-    add("--first", type=float, default=defaults["first"], help="first and largest increment (default: %(default)s)")
+    add("--to", type=positive, default=defaults["to"], help="load parameter at the end (default: %(default)s)")
+    add("--first", type=positive, default=defaults["first"], help="first and largest increment (default: %(default)s)")
     add("--tolerance", type=float, default=1e-3, help="of forces and of the stresses of RVEs (default: 1e-3)")
     add("--strains", default="finite", choices=("finite", "small"))
     add("--length", type=float, default=0, metavar="M", help="gives bands a width; 0: none (default)")

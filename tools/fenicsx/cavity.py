@@ -9,6 +9,7 @@ as phi."""
 import numpy as np
 
 from . import cases
+from .material import geostatic
 from .solver import Solver
 
 RADIUS, OUTER = 1.0, 15.0
@@ -16,14 +17,14 @@ RADIUS, OUTER = 1.0, 15.0
 
 def main(words, comm):
     parser = cases.parser("cavity", __doc__, recipe="pack_dense", grains=200, draws=4, elements=4, to=0.02, first=5e-4)
-    parser.add_argument("--pressure", type=float, default=100e3, metavar="PA", help="in the soil (default: 100e3)")
+    parser.add_argument("--pressure", type=cases.positive, default=100e3, metavar="PA", help="in the soil (default: 100e3)")
     o = parser.parse_args(words)
     n = o.elements  # around the quarter
     radii = RADIUS + cases.graded(1, RADIUS * np.pi / 2 / n / 1.5, 3 * n, OUTER - RADIUS)
     body = cases.rectangle(comm, radii, np.linspace(0, np.pi / 2, n + 1))
     r, angle = body.geometry.x[:, 0].copy(), body.geometry.x[:, 1].copy()
     body.geometry.x[:, 0], body.geometry.x[:, 1] = r * np.cos(angle), r * np.sin(angle)
-    material = cases.material(o, comm, body)
+    material = cases.material(o, comm, body, initial=geostatic(0, 0, 1, o.pressure))
     solver = Solver(material)
     distance = lambda x: np.hypot(x[0], x[1])  # noqa: E731
     # Chords between nodes are nearer to the middle than these: their middles count as on the circle.

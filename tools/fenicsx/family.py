@@ -10,10 +10,12 @@ import numpy as np
 import rvelab
 
 Sources = str | os.PathLike | Sequence | Mapping
-# Members are this far apart in the logarithm of the vertical stress, and in the ratios of the others to it. Points lie at
-# most half of that from their member, and are brought to their stress by its tangent.
-STEP_OF_LOGARITHM, STEP_OF_RATIO = 0.02, 0.01
+# Each stress has its member, up to so many; of more the members are this far apart in the logarithm of the vertical
+# stress, and in the ratios of the others to it, and points are brought from there to their stress by the tangent.
+MOST_EXACT, STEP_OF_LOGARITHM, STEP_OF_RATIO = 100, 0.02, 0.01
 LARGEST_STEP = 0.1  # of a stress on the way there, over the mean pressure
+NEAR = 1e-3  # over the pressure: a specimen that is so near to a stress stays as it is
+HELD = 1e-3  # tolerance of the stresses of members
 NAMES = {2: ("xx", "yy", "xy"), 3: ("xx", "yy", "zz", "yz", "xz", "xy")}
 
 
@@ -34,40 +36,51 @@ def chosen_sources(sources: Sources, tags: np.ndarray | None, numbers: np.ndarra
     return found
 
 
-def members(sources: list[Any], sigma: np.ndarray | None, d: int,
-            options: Mapping[str, Any]) -> tuple[np.ndarray, dict[int, bytes]]:
-    """Group of each point, and a snapshot of the RVE of each group."""
+def members(comm: Any, sources: list[Any], sigma: np.ndarray | None, d: int,
+            options: Mapping[str, Any]) -> tuple[np.ndarray, dict[int, bytes], np.ndarray | None]:
+    """Collective. Group of each point, a snapshot of the RVE of each group, and the stress that each point is brought
+    to from there by the tangent: NaN where it stays."""
+    goals = [()] * len(sources) if sigma is None else [_exact(each) for each in sigma]
+    if len(set().union(*comm.allgather(set(goals)))) > MOST_EXACT:
+        goals = [_binned(goal) for goal in goals]
     keys: dict[tuple, int] = {}
-    group = np.zeros(len(sources), np.int64)
-    for k, source in enumerate(sources):
-        bins = () if sigma is None else _bins(sigma[k])
-        group[k] = keys.setdefault((str(source), *bins), len(keys))
-    return group, {number: _member(key, d, options) for key, number in keys.items()}
+    group = np.array([keys.setdefault((str(source), goal), len(keys))
+                      for source, goal in zip(sources, goals)], np.int64).reshape(-1)
+    made = {number: _member(*key, d, options) for key, number in keys.items()}
+    if sigma is not None:
+        stays = np.array([each[1] for each in made.values()])[group] if len(group) else np.zeros(0, bool)
+        sigma = np.where(stays[:, None, None], np.nan, sigma)
+    return group, {number: each[0] for number, each in made.items()}, sigma
 
 
-def _bins(sigma: np.ndarray) -> tuple[int, ...]:
-    vertical = sigma[-1, -1] if len(sigma) == 3 else sigma[1, 1]
-    if not vertical < 0:
-        raise ValueError(f"an initial vertical stress is {vertical:.4g} Pa; allowed: compression (negative) at every "
+def _exact(sigma: np.ndarray) -> tuple[float, ...]:
+    """Upper triangle, Pa, to nine digits."""
+    if not sigma[-1, -1] < 0:
+        raise ValueError(f"an initial vertical stress is {sigma[-1, -1]:.4g} Pa; allowed: compression (negative) at every "
                          "point, by a load on the free surface")
-    rows, columns = np.triu_indices(len(sigma))
-    ratios = sigma[rows, columns] / vertical
-    return (round(np.log(-vertical) / STEP_OF_LOGARITHM), *(round(each / STEP_OF_RATIO) for each in ratios))
+    return tuple(float(f"{each:.9g}") for each in sigma[np.triu_indices(len(sigma))])
 
 
-def _member(key: tuple, d: int, options: Mapping[str, Any]) -> bytes:
-    source, bins = key[0], key[1:]
-    with rvelab.Pool(workers=1, **{name: value for name, value in options.items() if name != "workers"}) as pool:
+def _binned(goal: tuple[float, ...]) -> tuple[float, ...]:
+    vertical = -np.exp(round(np.log(-goal[-1]) / STEP_OF_LOGARITHM) * STEP_OF_LOGARITHM)
+    return tuple(float(vertical * STEP_OF_RATIO * round(each / goal[-1] / STEP_OF_RATIO)) for each in goal)
+
+
+def _member(source: str, goal: tuple[float, ...], d: int, options: Mapping[str, Any]) -> tuple[bytes, bool]:
+    """Snapshot, and whether the specimen stayed as it is."""
+    with rvelab.Pool(**{**options, "workers": 1}) as pool:
         rve = rvelab.Rve(source, pool)
         if rve.dimension != d:
             raise ValueError(f"{source} is a specimen in {rve.dimension}D, and the mesh is in {d}D")
-        if bins:
-            sigma = np.zeros((d, d))
-            rows, columns = np.triu_indices(d)
-            vertical = -np.exp(bins[0] * STEP_OF_LOGARITHM)
-            sigma[rows, columns] = sigma[columns, rows] = vertical * STEP_OF_RATIO * np.array(bins[1:])
+        if not goal:
+            return rve.snapshot(), True
+        sigma = np.zeros((d, d))
+        rows, columns = np.triu_indices(d)
+        sigma[rows, columns] = sigma[columns, rows] = goal
+        stays = np.abs(rve.stress[:d, :d] - sigma).max() < NEAR * rve.p
+        if not stays:
             bring(rve, sigma)
-        return rve.snapshot()
+        return rve.snapshot(), bool(stays)
 
 
 def bring(rve: rvelab.Rve, sigma: np.ndarray) -> None:
@@ -83,4 +96,4 @@ def bring(rve: rvelab.Rve, sigma: np.ndarray) -> None:
             p = begin * (end / begin) ** part
             goal = p * ((1 - part) * start[:d, :d] / begin + part * sigma / end)
             held = {name: goal["xyz".index(name[0]), "xyz".index(name[1])] for name in NAMES[d]}
-            rve.apply_held(np.zeros((3, 3)), held)
+            rve.apply_held(np.zeros((3, 3)), held, tolerance=HELD)

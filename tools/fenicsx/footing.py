@@ -25,7 +25,7 @@ def n_gamma(phi, rough):
 
 def main(words, comm):
     parser = cases.parser("footing", __doc__, recipe="pack_medium", grains=200, draws=4, elements=2, to=0.1, first=2e-3)
-    parser.add_argument("--surcharge", type=float, default=100e3, metavar="PA", help="on the ground (default: 100e3)")
+    parser.add_argument("--surcharge", type=cases.positive, default=100e3, metavar="PA", help="on the ground (default: 100e3)")
     parser.add_argument("--unit-weight", type=float, default=0, metavar="N/M3", help="of the soil (default: 0)")
     parser.add_argument("--at-rest", type=float, default=1, help="initial horizontal over vertical stress (default: 1)")
     parser.add_argument("--smooth", action="store_true", help="the base of the footing slides on the soil")

@@ -71,7 +71,8 @@ class Material:
             owned = cell_tags.indices < count
             of_cells[cell_tags.indices[owned]] = cell_tags.values[owned]
             tags = np.repeat(of_cells, nq)
-        group, family = members(chosen_sources(specimens, tags, self.numbers), sigma, d, options)
+        sources = chosen_sources(specimens, tags, self.numbers)
+        group, family, sigma = members(mesh.comm, sources, sigma, d, options)
         share = tolerance if share is True else float(share)
         self.points = Points(mesh.comm, d, group, family, options, share, balance, sigma)
         self.stiffening, self.C = stiffening, None

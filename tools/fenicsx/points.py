@@ -28,7 +28,7 @@ class Response(NamedTuple):
 class Points:
     """n points of this rank. group: (n) number of the family member of each point, a key of `members`, which are
     snapshots of RVEs. share: error of the stress over the pressure that points may have which share an RVE; 0: none
-    does. sigma: (n, d, d) Pa, stresses of the points near those of their members, or None: theirs."""
+    does. sigma: (n, d, d) Pa, stresses that points are brought to from their members; NaN or None: theirs."""
 
     def __init__(self, comm: Any, d: int, group: np.ndarray, members: dict[int, bytes], options: dict[str, Any],
                  share: float = 0, balance: bool = True, sigma: np.ndarray | None = None) -> None:
@@ -38,7 +38,8 @@ class Points:
         n = len(group)
         self.F = np.tile(np.eye(d), (n, 1, 1))
         for key, shared in self.shared.items() if sigma is not None else ():
-            self.F[group == key] += shared.strain_to(sigma[group == key])
+            moved = (group == key) & np.isfinite(sigma[:, 0, 0])
+            self.F[moved] += shared.strain_to(sigma[moved])
         self.home, self.ids = np.full(n, -1), np.zeros(n, np.int64)  # rank and id of its RVE; -1: none
         self.warned: dict[int, int] = {}
         self.work, self.counted = np.zeros(n), np.zeros(n)  # grain-steps of the last increments, and at their beginning

@@ -11,6 +11,7 @@ import rvelab
 from dolfinx import mesh
 
 from . import cases
+from .material import geostatic
 from .solver import Solver
 
 RADIUS, HALF = 0.5, 1.0
@@ -30,7 +31,7 @@ def alone(o, comm, file):
 
 def main(words, comm):
     parser = cases.parser("triaxial", __doc__, recipe="pack_hertz", grains=200, draws=1, elements=2, to=0.01, first=5e-4)
-    parser.add_argument("--pressure", type=float, default=100e3, metavar="PA", help="lateral (default: 100e3)")
+    parser.add_argument("--pressure", type=cases.positive, default=100e3, metavar="PA", help="lateral (default: 100e3)")
     parser.add_argument("--smooth", action="store_true", help="smooth plates: the strain is that of one RVE")
     o = parser.parse_args(words)
     n = o.elements
@@ -39,8 +40,7 @@ def main(words, comm):
     # The quarter of a square onto that of a disc, whose outer sides meet on the diagonal.
     body.geometry.x[:, 0] = RADIUS * x * np.sqrt(1 - y ** 2 / 2)
     body.geometry.x[:, 1] = RADIUS * y * np.sqrt(1 - x ** 2 / 2)
-    initial = lambda p: np.tile(-o.pressure * np.eye(3), (len(p), 1, 1))  # noqa: E731
-    material = cases.material(o, comm, body, initial=initial)
+    material = cases.material(o, comm, body, initial=geostatic(HALF, 0, 1, o.pressure, 3))
     solver = Solver(material)
     top = lambda p: np.isclose(p[2], HALF)  # noqa: E731
     for k in range(3):

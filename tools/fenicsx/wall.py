@@ -15,7 +15,7 @@ HEIGHT, LENGTH = 1.0, 2.0
 def main(words, comm):
     parser = cases.parser("wall", __doc__, recipe="pack_dense", grains=200, draws=4, elements=3, to=0.02, first=1e-3)
     parser.add_argument("--passive", action="store_true", help="the wall moves into the soil")
-    parser.add_argument("--surcharge", type=float, default=20e3, metavar="PA", help="on the ground (default: 20e3)")
+    parser.add_argument("--surcharge", type=cases.positive, default=20e3, metavar="PA", help="on the ground (default: 20e3)")
     parser.add_argument("--unit-weight", type=float, default=20e3, metavar="N/M3", help="of the soil (default: 20e3)")
     parser.add_argument("--at-rest", type=float, default=0.5, help="initial horizontal over vertical stress (default: 0.5)")
     o = parser.parse_args(words)
