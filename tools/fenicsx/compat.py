@@ -60,16 +60,22 @@ def cell_dofs(space: Any, cells: int) -> np.ndarray:
     return array[:cells]
 
 
+def _first(geometry: Any, name: str) -> Any:
+    """The one of the only kind of cells: geometry.name; geometry.names[0] of releases that deprecate it."""
+    several = getattr(geometry, name + "s", None)
+    return several[0] if isinstance(several, (list, tuple)) else getattr(geometry, name)
+
+
 def cell_corners(mesh: Any, cells: int) -> np.ndarray:
     """(cells, nodes, 3) m, nodes of the geometry of the first cells."""
-    listed = mesh.geometry.dofmap
+    listed = _first(mesh.geometry, "dofmap")
     array = listed.array.reshape(listed.num_nodes, -1) if hasattr(listed, "array") else np.asarray(listed)
     return mesh.geometry.x[array[:cells]]
 
 
 def push_forward(mesh: Any, points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """(points, dimension) m of points of the reference cell, in the cell of these corners."""
-    return mesh.geometry.cmap.push_forward(points, np.ascontiguousarray(corners[:, :mesh.geometry.dim]))
+    return _first(mesh.geometry, "cmap").push_forward(points, np.ascontiguousarray(corners[:, :mesh.geometry.dim]))
 
 
 def evaluate(expression: Any, mesh: Any, cells: np.ndarray) -> np.ndarray:

@@ -53,6 +53,7 @@ class Forms:
         dimension = self.material.d - 1 if at == "facets" else 0
         entities = compat.locate(self.mesh, dimension, where)
         self._expect(len(entities), at)
+        self.mesh.topology.create_connectivity(dimension, self.mesh.topology.dim)
         return fem.locate_dofs_topological(self.space, dimension, entities)
 
     def _nodes(self) -> np.ndarray:
