@@ -61,7 +61,7 @@ def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
 
 
 def specimens(o: Any, comm: Any) -> list[str]:
-    """Collective. The specimen files, packed by the first rank if none are given."""
+    """Collective. The specimen files, packed by the first rank if none are given; from then on these are the given."""
     if o.specimens:
         missing = [file for file in o.specimens if not Path(file).exists()]
         if missing:
@@ -81,6 +81,7 @@ def specimens(o: Any, comm: Any) -> list[str]:
     failure = comm.bcast(failure)
     if failure:
         raise ValueError(failure)
+    o.specimens = files
     return files
 
 
@@ -97,19 +98,11 @@ def angles(o: Any, comm: Any, pressures: Sequence[float]) -> tuple[float, float]
     if comm.rank == 0:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            tests = rvelab.calibrate("biaxial", o.specimens or specimens(o, _Alone), list(pressures))
+            tests = rvelab.calibrate("biaxial", o.specimens, list(pressures))
         each = tests["per_pressure"]
         found = (float(np.mean([test["friction_angle_deg"] for test in each])),
                  float(np.mean([test["large_strain_friction_angle_deg"] for test in each])))
     return comm.bcast(found)
-
-
-class _Alone:  # specimens() on the first rank, of files that are there
-    rank = 0
-
-    @staticmethod
-    def bcast(value: Any) -> Any:
-        return value
 
 
 def graded(fine: int, size: float, count: int, length: float) -> np.ndarray:
