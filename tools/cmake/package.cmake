@@ -28,6 +28,8 @@ endif()
 file(GLOB python_modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/python/rvelab/*.py)
 install(FILES ${PROJECT_SOURCE_DIR}/tools/python/micro_simulation.py DESTINATION lib/python3/dist-packages COMPONENT python)
 install(FILES ${python_modules} DESTINATION lib/python3/dist-packages/rvelab COMPONENT python)
+file(GLOB fenicsx_modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/fenicsx/*.py)
+install(FILES ${fenicsx_modules} DESTINATION lib/python3/dist-packages/rvelab/fenicsx COMPONENT python)
 
 # The same as a wheel, with libraries, programs, protocols and figures in it: build/release/wheel.
 find_program(DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

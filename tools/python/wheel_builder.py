@@ -80,6 +80,8 @@ def contents():
     info = f"rvelab-{version()}.dist-info"
     for file in [HERE / "micro_simulation.py", *sorted((HERE / "rvelab").glob("*.py"))]:
         yield str(file.relative_to(HERE)), file.read_bytes(), False
+    for file in sorted((ROOT / "tools/fenicsx").glob("*.py")):
+        yield f"rvelab/fenicsx/{file.name}", file.read_bytes(), False
     for name, file in native_files():
         yield f"rvelab/native/{name}", file.read_bytes(), name in PROGRAMS
     yield f"{info}/METADATA", metadata(project).encode(), False

@@ -1,0 +1,92 @@
+"""The cases of python3 -m rvelab.fenicsx, small, beside what theory says of them. Argument: folder."""
+import csv
+import os
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import stand_in  # skips without dolfinx
+import numpy as np
+
+FOLDER = Path(sys.argv.pop(1)).resolve()
+FOLDER.mkdir(parents=True, exist_ok=True)
+stand_in.FOLDER = FOLDER
+
+
+def case(*words, code=0):
+    done = subprocess.run([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", *words], cwd=FOLDER, capture_output=True,
+                          text=True, env={**os.environ, "OMP_NUM_THREADS": "1"}, timeout=280)
+    if done.returncode != code:
+        raise AssertionError(done.stdout + done.stderr)
+    return done.stdout if code == 0 else done.stderr
+
+
+def curve(name):
+    with open(FOLDER / name / "curve.csv", newline="") as file:
+        rows = list(csv.reader(file))
+    return {each: np.array([float(row[k]) for row in rows[1:]]) for k, each in enumerate(rows[0])}
+
+
+class Cases(unittest.TestCase):
+    def test_biaxial_is_the_test_of_its_specimen_and_is_resumed(self):
+        file = stand_in.specimen()
+        options = ("--specimens", file, "--elements", "1", "--frames", "2", "--keep", "2", "--to", "0.004")
+        case("biaxial", *options)
+        whole = curve("biaxial")
+        import rvelab
+        own = rvelab.run("biaxial", file, {"test.pressure_Pa": 100e3, "stage.compression.to_strain": 0.004})
+        expected = np.interp(whole["t"], own["strain"], -own["stress_Pa"][:, 1, 1] / 100e3)
+        np.testing.assert_allclose(whole["load_ratio"], expected, rtol=0.03)
+        self.assertTrue((FOLDER / "biaxial/fields/points.xdmf").exists())
+        case("biaxial", *options[:-1], "0.002", "-o", "parts")
+        self.assertIn("4 rows of the run before", case("biaxial", *options, "-o", "parts", "--resume"))
+        np.testing.assert_array_equal(curve("parts")["load_ratio"], whole["load_ratio"])
+        said = case("rve", "parts/checkpoint", "3", "-o", "three.h5")
+        self.assertIn("three.h5: the RVE of point 3", said)
+        self.assertEqual(len(rvelab.Rve(FOLDER / "three.h5").radii), 50)
+
+    def test_footing_is_stiffer_rough_and_below_its_capacity(self):
+        options = ("--grains", "50", "--draws", "1", "--elements", "1", "--to", "0.004", "--frames", "0", "--keep", "0")
+        said = case("footing", *options, "--unit-weight", "10e3", "--at-rest", "0.6")
+        self.assertRegex(said, r"by the formula \d+\.\d by \d+\.\d degrees \(peak\), \d+\.\d by")
+        rough = curve("footing")["pressure_ratio"]
+        self.assertTrue((np.diff(rough) > 0).all() and 1 < rough[-1] < 20)
+        case("footing", *options, "--unit-weight", "10e3", "--at-rest", "0.6", "--smooth", "-o", "smooth")
+        self.assertLess(curve("smooth")["pressure_ratio"][-1], rough[-1])
+
+    def test_wall_begins_at_rest_and_goes_to_either_side(self):
+        options = ("--grains", "50", "--draws", "1", "--elements", "2", "--frames", "0", "--keep", "0", "--first", "2e-4")
+        case("wall", *options, "--to", "0.001")
+        case("wall", *options, "--to", "0.001", "--passive", "-o", "passive")
+        active, passive = curve("wall")["K"], curve("passive")["K"]
+        self.assertTrue((np.diff(active) < 0).all() and (np.diff(passive) > 0).all())
+        self.assertAlmostEqual(active[0] - (active[1] - active[0]), 0.5, delta=0.02)  # extrapolated to no displacement
+        self.assertGreater(active[-1], 0.15)
+
+    def test_cavity_begins_elastic(self):
+        """The first pressures follow p0 + 2 G u/a; the outer boundary and chords take some per cent."""
+        case("cavity", "--grains", "100", "--draws", "1", "--to", "2e-5", "--first", "1e-5", "--frames", "0", "--keep", "0",
+             "--elements", "8")
+        found = curve("cavity")
+        self.assertAlmostEqual(np.diff(found["pressure_ratio"])[0] / np.diff(found["elastic"])[0], 1, delta=0.1)
+        self.assertAlmostEqual(found["pressure_ratio"][0], 1, delta=0.01)
+
+    def test_triaxial_with_smooth_plates_is_the_test_of_its_specimen(self):
+        said = case("triaxial", "--grains", "60", "--elements", "1", "--to", "0.002", "--frames", "0", "--keep", "0",
+                    "--smooth")
+        load, alone = map(float, re.search(r"at the end ([\d.]+); .* at that strain ([\d.]+)", said).groups())
+        self.assertAlmostEqual(load / alone, 1, delta=0.05)
+
+    def test_mistakes_are_told_in_a_sentence(self):
+        self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
+        self.assertIn("there is no file none.h5", case("biaxial", "--specimens", "none.h5", code=2))
+        with_file = ("--specimens", stand_in.specimen())
+        self.assertIn("no checkpoint was made there", case("biaxial", *with_file, "--resume", "-o", "new", code=2))
+        self.assertIn("tolerance is 2; allowed: 1e-6 to 0.1", case("wall", *with_file, "--tolerance", "2", code=2))
+        self.assertIn("usage", case("--help"))
+
+
+if __name__ == "__main__":
+    unittest.main()
