@@ -178,7 +178,8 @@ void prepare_folder(const SheetArguments& arguments, const SheetSetup& setup) {
   for (const SheetSpecimen& specimen : setup.specimens.all)
     if (setup.specimens.given) inputs.push_back(specimen.file);
   for (const char* name : {"asked.json", "index.html", "summary.json", "summary.csv"})
-    io::expect_output(arguments.file(name), arguments.force, inputs, ", --resume to go on with the sheet");
+    io::expect_output(arguments.file(name), arguments.force || arguments.resume || arguments.share, inputs,
+                      ", --resume to go on with the sheet");
   if (arguments.force && fs::exists(own)) remove_records(arguments);
   for (const char* part : {"tests", "specimens"}) make_folder(arguments.file(part));
   io::publish_text(own, json_text(asked));
@@ -219,8 +220,7 @@ sheet::Test made_test(const SheetSetup& setup, const SheetTest& planned, protoco
 std::optional<std::vector<sheet::Test>> made_tests(const SheetArguments& arguments, const SheetSetup& setup,
                                                    const std::vector<SheetTest>& planned, unsigned threads,
                                                    std::vector<std::string>& failures) {
-  std::vector<std::size_t> loadings;
-  std::vector<bool> done;
+  std::vector<SheetCost::Planned> costs;
   std::size_t of_first = 0;
   std::vector<RecordedTest> tests;
   std::optional<SheetCost> cost;
@@ -233,15 +233,13 @@ std::optional<std::vector<sheet::Test>> made_tests(const SheetArguments& argumen
                          return io::read_specimen(specimen);
                        }},
                       (fs::path(arguments.folder) / "tests" / (each.name + ".h5")).string()};
-    loadings.push_back(each.loading);
-    done.push_back(fs::exists(test.file) && !fs::exists(io::journal_of(test.file)));
+    costs.push_back({each.loading, test.file});
     of_first += each.specimen == planned.front().specimen ? 1 : 0;
     tests.push_back(std::move(test));
   }
   const Ranks ranks = arguments.share ? launched_ranks() : Ranks{};
   if (ranks.rank > 0) of_first = tests.size() + 1;  // the first rank alone says what the rest takes
-  cost.emplace(std::move(loadings), std::move(done), of_first, std::min<std::size_t>(threads, tests.size()),
-               ranks.count);
+  cost.emplace(std::move(costs), of_first, std::min<std::size_t>(threads, tests.size()), ranks.count);
   TestOptions options;
   options.threads = threads;
   options.resume = true;  // the folder is of this sheet

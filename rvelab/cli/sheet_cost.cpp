@@ -2,37 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 
-SheetCost::SheetCost(std::vector<std::size_t> loadings, std::vector<bool> done, std::size_t first, std::size_t lanes,
-                     std::size_t processes)
-    : loadings_(std::move(loadings)), done_(std::move(done)), first_(first), lanes_(lanes), processes_(processes) {}
+namespace fs = std::filesystem;
+
+SheetCost::SheetCost(std::vector<Planned> tests, std::size_t first, std::size_t lanes, std::size_t processes)
+    : tests_(std::move(tests)), first_(first), lanes_(lanes), processes_(processes) {
+  for (std::size_t k = 0; k < tests_.size(); ++k) done_.push_back(complete(k));
+}
+
+bool SheetCost::complete(std::size_t test) const {
+  return fs::exists(tests_[test].file) && !fs::exists(io::journal_of(tests_[test].file));
+}
 
 void SheetCost::begins(std::size_t test) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  Begun& here = running_.try_emplace(std::this_thread::get_id(), Begun{test, now}).first->second;
-  if (here.test != test && !done_[here.test]) {
+  Begun& here = running_[std::this_thread::get_id()];
+  // One that another process has in hand, or that was begun before, tells no time.
+  if (here.whole && complete(here.test)) {
     const double seconds = std::chrono::duration<double>(now - here.when).count();
-    of_loading_[loadings_[here.test]].add(seconds);
+    of_loading_[tests_[here.test].loading].add(seconds);
     all_.add(seconds);
     if (all_.tests >= first_ && !told_) tell_rest();
   }
-  here = {test, now};
+  here = {test, now, !fs::exists(tests_[test].file) && !fs::exists(io::journal_of(tests_[test].file))};
 }
 
 void SheetCost::tell_rest() {
   told_ = true;
   double rest = -double(processes_) * all_.seconds;
   std::size_t left = 0;
-  for (std::size_t k = 0; k < done_.size(); ++k) {
+  for (std::size_t k = 0; k < tests_.size(); ++k) {
     if (done_[k]) continue;
-    const auto same = of_loading_.find(loadings_[k]);
+    const auto same = of_loading_.find(tests_[k].loading);
     rest += same != of_loading_.end() ? same->second.mean() : all_.mean();
     ++left;
   }

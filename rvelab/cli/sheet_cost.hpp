@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -11,11 +12,13 @@ namespace rvelab::cli {
 
 class SheetCost {
  public:
-  /// `loadings`: of each test the number of its loading; tests that are complete already are left out (`done`).
-  /// `first`: so many tests before anything is said. `lanes`: tests at a time of this process, one of `processes` that
-  /// make as many each.
-  SheetCost(std::vector<std::size_t> loadings, std::vector<bool> done, std::size_t first, std::size_t lanes,
-            std::size_t processes);
+  struct Planned {
+    std::size_t loading = 0;  ///< tests of the same one take the same time
+    std::string file;         ///< of its records
+  };
+  /// `first`: tests of which the time must be known before anything is said. `lanes`: tests at a time of this process,
+  /// one of `processes` that make as many each.
+  SheetCost(std::vector<Planned> tests, std::size_t first, std::size_t lanes, std::size_t processes);
   /// A test begins, on any thread; the one before on this thread has ended.
   void begins(std::size_t test);
 
@@ -24,6 +27,7 @@ class SheetCost {
   struct Begun {
     std::size_t test = 0;
     Clock::time_point when;
+    bool whole = false;  ///< nothing was there of it
   };
   struct Sum {
     double seconds = 0;
@@ -31,10 +35,11 @@ class SheetCost {
     void add(double more) { seconds += more, ++tests; }
     double mean() const { return seconds / double(tests); }
   };
+  bool complete(std::size_t test) const;
   void tell_rest();
 
-  const std::vector<std::size_t> loadings_;
-  const std::vector<bool> done_;  ///< before this run
+  const std::vector<Planned> tests_;
+  std::vector<bool> done_;  ///< before this run
   const std::size_t first_, lanes_, processes_;
   bool told_ = false;
   Sum all_;
