@@ -80,9 +80,14 @@ sheet::Plan plan_of(const std::string& path, const std::vector<std::string>& set
 
 SheetSpecimens specimens_of(const SheetArguments& arguments, const sheet::Plan& plan,
                             const std::vector<std::string>& settings) {
-  const bool recipe = arguments.what.size() == 1 && !arguments.what.front().ends_with(".h5") &&
-                      arguments.what.front().find_first_of("*?[") == std::string::npos;
-  if (recipe)
+  const auto is_recipe = [](const std::string& word) {
+    return !word.ends_with(".h5") && word.find_first_of("*?[") == std::string::npos;
+  };
+  const auto recipe = std::find_if(arguments.what.begin(), arguments.what.end(), is_recipe);
+  if (recipe != arguments.what.end() && arguments.what.size() > 1)
+    throw InputError("sheet: " + *recipe +
+                     " is given beside others; allowed: one recipe, or specimens (*.h5); make a sheet of each soil");
+  if (recipe != arguments.what.end())
     return specimens_of_recipe(plan, input_path(arguments.what.front(), InputKind::recipe), settings,
                                arguments.file("specimens"));
   if (!settings.empty())
@@ -99,18 +104,28 @@ void add_remarks(SheetSetup& setup) {
   setup.remarks.insert(setup.remarks.end(), specimens.remarks.begin(), specimens.remarks.end());
   std::vector<std::size_t> counts(specimens.groups.size());
   for (const SheetSpecimen& specimen : specimens.all) ++counts[specimen.group];
+  std::vector<std::string> single;
   for (std::size_t k = 0; k < counts.size(); ++k)
-    if (counts[k] == 1)
-      setup.remarks.push_back(specimens.groups[k].name +
-                              " has one specimen: its numbers have no standard error and no interval");
+    if (counts[k] == 1) single.push_back(specimens.groups[k].name);
+  if (!single.empty())
+    setup.remarks.push_back(keys::listed(single) +
+                            (single.size() == 1 ? " has one specimen: its" : " have one specimen each: their") +
+                            " numbers have no standard error and no interval");
   if (counts.size() == 1)
     setup.remarks.push_back("there is one density: how numbers depend on the density is not known");
 }
 
 SheetSetup setup_of(const SheetArguments& arguments) {
   std::vector<std::string> of_plan, of_recipe;
-  for (const std::string& setting : arguments.settings)
+  for (const std::string& setting : arguments.settings) {
+    for (const char* table : {"stage.", "loading.", "output."})
+      if (setting.starts_with(table))
+        throw InputError("--set " + setting +
+                         " is a key of a protocol; allowed: keys of the plan (sheet, density, test) or of the recipe; "
+                         "write for example --set 'test.drained.settings=[\"" +
+                         setting + "\"]'");
     (sheet::is_of_plan(setting) ? of_plan : of_recipe).push_back(setting);
+  }
   SheetSetup setup;
   setup.plan = plan_of(plan_path(arguments.quick ? "quick" : arguments.plan), of_plan);
   setup.specimens = specimens_of(arguments, setup.plan, of_recipe);

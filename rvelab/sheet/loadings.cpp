@@ -58,6 +58,16 @@ void expect_purpose(const PlanTest& test, const protocol::Protocol& protocol) {
                      "such as isotropic_probes; name one");
 }
 
+/// The protocol with settings of the test; an InputError names the test.
+protocol::Protocol protocol_of(const PlanTest& test, const std::string& path,
+                               const std::vector<std::string>& settings) {
+  try {
+    return protocol::read_protocol(path, settings);
+  } catch (const InputError& error) {
+    throw InputError("test." + test.name + ": " + error.what());
+  }
+}
+
 /// One loading: the protocol with pressure and amplitude.
 Loading loading(const Plan& plan, std::size_t row, const std::string& path, double pressure, double amplitude) {
   const PlanTest& test = plan.tests[row];
@@ -67,7 +77,7 @@ Loading loading(const Plan& plan, std::size_t row, const std::string& path, doub
     settings.push_back("test.pressure_Pa=" + io::exact(pressure));
     made.suffix += "_" + in_words(pressure / 1000) + "kPa";
   }
-  made.protocol = protocol::read_protocol(path, settings);
+  made.protocol = protocol_of(test, path, settings);
   if (!(made.pressure > 0)) made.pressure = made.protocol.pressure;
   if (amplitude > 0) {
     made.suffix += "_" + in_words(amplitude);
@@ -80,7 +90,7 @@ Loading loading(const Plan& plan, std::size_t row, const std::string& path, doub
       const double stress = (stage.simple_shear ? 1 : 2) * amplitude * made.pressure;
       settings.push_back(key + "reverse_at_Pa=" + io::exact(stress));
     }
-    made.protocol = protocol::read_protocol(path, settings);
+    made.protocol = protocol_of(test, path, settings);
   }
   expect_purpose(test, made.protocol);
   return made;
@@ -103,7 +113,7 @@ std::vector<Loading> loadings_of(const Plan& plan, int dimension, std::vector<st
     const auto purpose = std::size_t(test.purpose);
     const bool plane = dimension == 2 && !test.protocol_2D.empty();
     const std::string& path = plane ? test.protocol_2D : test.protocol;
-    if (const int its = protocol::read_protocol(path, test.settings).dimension; its != 0 && its != dimension) {
+    if (const int its = protocol_of(test, path, test.settings).dimension; its != 0 && its != dimension) {
       left_out[purpose] =
           test.name + " is left out: " + name_of(path) + " is a test in " +
           (its == 3 ? "space, and the grains are in the plane" : "the plane, and the grains are in space");

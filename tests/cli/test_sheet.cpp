@@ -140,6 +140,10 @@ TEST_CASE("A folder of another sheet, a plan or a recipe with a mistake are refu
   here.refuses("sheet pack_dense --plan standrad -o B", "nearest is standard", "quick");
   here.refuses("sheet pack_dense --plan plan.toml -o B --set density.loose.void_ratio=x", "density.loose.void_ratio");
   here.refuses("sheet pack_densee --plan plan.toml -o B", "nearest is pack_dense");
+  here.refuses("sheet pack_dense pack_loose --plan plan.toml -o B", "pack_dense is given beside others");
+  here.refuses(command + "B --set stage.compression.to_strain=0.1", "is a key of a protocol", "test.drained.settings");
+  here.refuses(command + "B --set 'test.drained.settings=[\"stage.cmpression.to_strain=0.1\"]'",
+               "test.drained: ", "names no stage");
   here.refuses("sheet none.h5 --plan plan.toml -o B", "none.h5");
   here.refuses("sheet pack_dense --quick -o B", "density.loose", "target.relative_density", "target.e_min");
   here.refuses("sheet pack_dense --plan plan.toml -o plan.toml", "plan.toml");
