@@ -27,7 +27,8 @@ std::vector<std::string> order_in(const std::string& readme) {
   bool below = false;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("## ")) below = line == "## Modules";
-    const bool row = line.starts_with("| rvelab/") || line.starts_with("| tools/mpm/");
+    const bool row =
+        line.starts_with("| rvelab/") || line.starts_with("| tools/mpm/") || line.starts_with("| tools/models |");
     if (below && row) modules.push_back(line.substr(2, line.find(" |", 2) - 2));
   }
   return modules;
