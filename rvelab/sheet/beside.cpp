@@ -138,8 +138,11 @@ Series symbols_of(const std::string& label, const std::vector<double>& x, double
 }
 
 void place_curve(Sheet& sheet, const MeasuredCurve& measured, const std::string& folder) {
-  const auto curves = fit::read_curves((std::filesystem::path(folder) / measured.curve).string(), measured.selection,
-                                       [&](const std::string& note) { sheet.remarks.push_back(note + "."); });
+  const std::string path = (std::filesystem::path(folder) / measured.curve).string();
+  const auto curves = fit::read_curves(path, measured.selection, [&](std::string note) {
+    if (note.starts_with(path)) note.replace(0, path.size(), measured.name);  // a page names no folder of a machine
+    sheet.remarks.push_back(note + ".");
+  });
   bool placed = false;
   const auto put = [&](const char* key, const Series& series) {
     if (Figure* const figure = figure_in(sheet, key)) {

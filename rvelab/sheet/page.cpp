@@ -30,18 +30,22 @@ std::string with_unit(const std::string& text, const std::string& unit) {
 /// "31.1 \u00b1 0.4\u00b0"
 std::string value_in_words(const Number& number) {
   const report::InUnit unit = report::fitting_unit(number.mean, number.unit);
-  return with_unit(report::with_its_error(unit.factor * number.mean, unit.factor * number.standard_error), unit.unit);
+  // An error of round-off would ask for all digits.
+  const bool scatters = number.standard_error > 1e-6 * std::abs(number.mean);
+  const double error = scatters ? unit.factor * number.standard_error : unknown;
+  return with_unit(report::with_its_error(unit.factor * number.mean, error), unit.unit);
 }
 std::string in_its_unit(const Number& number, double value) {
   const report::InUnit unit = report::fitting_unit(number.mean, number.unit);
   return std::isfinite(value) ? with_unit(report::in_three_digits(unit.factor * value), unit.unit) : "";
 }
-/// "30.2 to 31.9", of both ends with three digits where they are of different sizes.
+/// "30.2 to 31.9"; both ends with three digits where they are of different sizes, or the same but for round-off.
 std::string interval_of(const Number& number) {
   if (!std::isfinite(number.low) || !std::isfinite(number.high)) return "";
   const report::InUnit unit = report::fitting_unit(number.mean, number.unit);
   const double low = unit.factor * number.low, high = unit.factor * number.high;
-  const bool wide = high - low > std::abs(unit.factor * number.mean);
+  const double size = std::abs(unit.factor * number.mean);
+  const bool wide = high - low > size || high - low < 1e-6 * size;
   return with_unit(wide ? report::in_three_digits(low) + " to " + report::in_three_digits(high)
                         : report::interval_in_words(low, high),
                    unit.unit);

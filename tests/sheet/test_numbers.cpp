@@ -30,35 +30,6 @@ bool remarks(const Sheet& sheet, const std::string& words) {
                      [&](const std::string& each) { return each.find(words) != std::string::npos; });
 }
 
-constexpr double critical = 31, e_G = 0.934, lambda = 0.019;
-double line(double p) { return e_G - lambda * std::pow(p / 101325, 0.7); }
-
-/// Drained tests of a sand with Bolton's relation (A, Q, R = 1), which end on the critical state line.
-std::vector<Test> bolton_tests(double A, double Q, int seeds, double scatter = 0) {
-  std::vector<Test> tests;
-  const double relative[] = {0.3, 0.6, 0.9};
-  const char* const names[] = {"loose", "medium", "dense"};
-  for (std::size_t density = 0; density < 3; ++density)
-    for (const double p : {50e3, 100e3, 200e3})
-      for (int seed = 1; seed <= seeds; ++seed) {
-        const double D = relative[density], own_Q = Q + scatter * (seed - 0.5 * (seeds + 1));
-        double peak = critical;
-        for (int round = 0; round < 60; ++round)
-          peak = critical + A * (D * (own_Q - std::log((p + deviator_at(peak, p) / 3) / 1000)) - 1);
-        const double largest = deviator_at(peak, p), last = deviator_at(critical, p);
-        const double end = line(p + last / 3), start = end - 0.05 - 0.2 * D;
-        tests.push_back(
-            compression(Purpose::drained, {names[density], density, D, std::uint64_t(seed), p}, [=](double strain) {
-              // Up to the peak at 4 %, down to the critical state at 10 %.
-              const double q = strain < 0.04 ? largest * std::sin(strain / 0.04 * std::numbers::pi / 2)
-                                             : largest + (last - largest) * std::min(1.0, (strain - 0.04) / 0.06);
-              const double e = start + (end - start) * std::min(1.0, strain / 0.1);
-              return Point{q, -(e - start) / (1 + start), e, p};
-            }));
-      }
-  return tests;
-}
-
 }  // namespace
 
 TEST_CASE(

@@ -10,6 +10,7 @@ import "./sheet.css";
 const sheet: Sheet = JSON.parse(document.getElementById("data")!.textContent!);
 const element = (id: string) => document.getElementById(id)!;
 const redraws: (() => void)[] = [];
+let onPaper = false;  // while it is printed, two figures stand in a row
 
 function add<Name extends keyof HTMLElementTagNameMap>(to: HTMLElement, name: Name, text = "", kind = "") {
   const made = document.createElement(name);
@@ -57,7 +58,7 @@ function addFigure(to: HTMLElement, figure: Figure) {
   const foot = add(box, "figcaption");
   add(foot, "span", figure.caption);
   const draw = () => {
-    const drawn = drawFigure(figure, Math.min(620, Math.max(280, area.clientWidth || 480)));
+    const drawn = drawFigure(figure, onPaper ? 380 : Math.min(620, Math.max(280, area.clientWidth || 480)));
     area.innerHTML = drawn.svg;
     legend.replaceChildren(...drawn.legend.map(({ sample, label }) => {
       const line = document.createElement("span");
@@ -122,7 +123,12 @@ function begin() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   let width = innerWidth;
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; redraw(); } });
-  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));
+  addEventListener("beforeprint", () => {
+    document.querySelectorAll("details").forEach((part) => { part.open = true; });
+    onPaper = true;
+    redraw();
+  });
+  addEventListener("afterprint", () => { onPaper = false; redraw(); });
   document.documentElement.dataset.ready = "1";
 }
 
