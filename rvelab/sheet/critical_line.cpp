@@ -185,15 +185,17 @@ void add_states(const std::vector<Test>& tests, const ensemble::CriticalLine& li
   add_by_pressure(sheet, state_about, states);
 }
 
-/// NaN: p is least at the start or at the end, which is no transformation.
+/// NaN: p does not fall and rise again by 2 % of its start, so that there is no transformation.
 Reading transformation_of(const Test& test) {
   const auto records = last_records(test);
-  const auto least = std::min_element(records.begin(), records.end(), [&](const auto& one, const auto& other) {
-    return mean_pressure(one.stress, test.dimension) < mean_pressure(other.stress, test.dimension);
-  });
-  if (records.size() < 3 || least == records.begin() || least + 1 == records.end()) return {&test};
-  return {&test, calibrate::friction_angle_deg(calibrate::principal_stresses(least->stress, test.dimension)),
-          angle_error_deg(test, *least)};
+  std::vector<double> p;
+  for (const records::Record& record : records) p.push_back(mean_pressure(record.stress, test.dimension));
+  const auto least = std::min_element(p.begin(), p.end());
+  const double room = *least + 0.02 * p.front();
+  if (p.front() < room || *std::max_element(least, p.end()) < room) return {&test};
+  const records::Record& record = records[std::size_t(least - p.begin())];
+  return {&test, calibrate::friction_angle_deg(calibrate::principal_stresses(record.stress, test.dimension)),
+          angle_error_deg(test, record)};
 }
 
 void add_transformation(const std::vector<Test>& tests, Sheet& sheet) {
@@ -209,7 +211,7 @@ void add_transformation(const std::vector<Test>& tests, Sheet& sheet) {
       sheet.remarks.push_back("The phase transformation of " + what + " is left out: there is no such test.");
     else if (without > 0)
       sheet.remarks.push_back(std::to_string(without) + " of " + std::to_string(found.size()) + " tests of " + what +
-                              " show no phase transformation: p is least at their start or at their end.");
+                              " show no phase transformation: p does not fall and rise again by 2 % of its start.");
     add_by_pressure(sheet, *about, found);
   }
 }

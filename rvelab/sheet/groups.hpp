@@ -34,11 +34,11 @@ struct EndState {
   double friction_angle = unknown;  ///< degrees
   double angle_error = unknown;     ///< of calculation, degrees
   double pressure_error = unknown;  ///< of p, Pa
-  bool steady = false;              ///< the mean over seeds is: steady_void_ratio, steady_pressure
+  bool steady = false;              ///< the mean over seeds is: e of drained, p of undrained tests
 };
 inline constexpr double end_strain = 0.12;          ///< a test that does not come so far has no end state
 inline constexpr double steady_void_ratio = 0.003;  ///< most that e changes from one half of the window to the other
-inline constexpr double steady_pressure = 0.05;     ///< the same of p, of its mean
+inline constexpr double steady_pressure = 0.05;     ///< the same of p, over its mean
 /// Of compressions, drained and undrained.
 std::vector<EndState> end_states(const std::vector<Test>& tests);
 

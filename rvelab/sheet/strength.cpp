@@ -227,7 +227,7 @@ Window window_of(const Test& test) {
   }
   window.end.angle_error = angle / double(count);
   window.end.pressure_error = pressure / double(count);
-  window.e_change = test.purpose == Purpose::undrained ? 0 : window.end.state.void_ratio_change;
+  window.e_change = window.end.state.void_ratio_change;
   window.p_change = first > 0 && first < count
                         ? (late / double(count - first) - early / double(first)) / window.end.state.p
                         : unknown;
@@ -250,7 +250,8 @@ std::vector<EndState> end_states(const std::vector<Test>& tests) {
       }
       const auto n = double(windows.size());
       for (Window& window : windows) {
-        window.end.steady = std::abs(e_change) <= n * steady_void_ratio && std::abs(p_change) <= n * steady_pressure;
+        window.end.steady = purpose == Purpose::drained ? std::abs(e_change) <= n * steady_void_ratio
+                                                        : std::abs(p_change) <= n * steady_pressure;
         ends.push_back(window.end);
       }
     }
