@@ -18,6 +18,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/keys/regular_file.hpp"
+#include "rvelab/sheet/beside.hpp"
 #include "rvelab/sheet/numbers.hpp"
 #include "rvelab/sheet/write_sheet.hpp"
 
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct SheetArguments {
   std::vector<std::string> what;  ///< a recipe, or specimens
-  std::string folder, plan = "standard";
+  std::string folder, plan = "standard", beside;
   std::vector<std::string> settings;
   unsigned threads = 0;
   bool quick = false, force = false, resume = false, share = false, json = false;
@@ -38,14 +39,14 @@ struct SheetArguments {
 
 struct SheetSetup {
   sheet::Plan plan;
-  std::vector<sheet::Loading> loadings;
+  std::vector<sheet::TestVariant> variants;
   SheetSpecimens specimens;
   std::vector<std::string> remarks;  ///< what is left out, and why
 };
 
 /// A test of the sheet: a specimen and what it goes through.
 struct SheetTest {
-  std::size_t specimen = 0, loading = 0;
+  std::size_t specimen = 0, variant = 0;
   std::string name;
 };
 
@@ -129,8 +130,9 @@ SheetSetup setup_of(const SheetArguments& arguments) {
   SheetSetup setup;
   setup.plan = plan_of(plan_path(arguments.quick ? "quick" : arguments.plan), of_plan);
   setup.specimens = specimens_of(arguments, setup.plan, of_recipe);
-  setup.loadings = sheet::loadings_of(setup.plan, setup.specimens.dimension, setup.remarks);
-  for (const sheet::Loading& loading : setup.loadings) warn_of_units(loading.protocol.path, loading.protocol.doubts);
+  setup.variants = sheet::variants_of(setup.plan, setup.specimens.dimension, setup.remarks);
+  for (const sheet::TestVariant& variant : setup.variants)
+    warn_of_units(variant.protocol.path, variant.protocol.doubts);
   add_remarks(setup);
   return setup;
 }
@@ -141,10 +143,10 @@ std::vector<SheetTest> tests_of(const SheetSetup& setup) {
   const auto& all = setup.specimens.all;
   for (std::size_t s = 0; s < all.size(); ++s) {
     const std::string& density = setup.specimens.groups[all[s].group].name;
-    for (std::size_t l = 0; l < setup.loadings.size(); ++l) {
-      const sheet::Loading& loading = setup.loadings[l];
-      if (sheet::goes_through(setup.plan, setup.plan.tests[loading.row], density, all[s].number))
-        tests.push_back({s, l, loading.name_with(density, all[s].number)});
+    for (std::size_t l = 0; l < setup.variants.size(); ++l) {
+      const sheet::TestVariant& variant = setup.variants[l];
+      if (sheet::goes_through(setup.plan, setup.plan.tests[variant.row], density, all[s].number))
+        tests.push_back({s, l, variant.name_with(density, all[s].number)});
     }
   }
   return tests;
@@ -156,8 +158,8 @@ Json asked_for(const SheetSetup& setup) {
   for (const SheetSpecimen& specimen : setup.specimens.all)
     asked["specimens"].push_back(setup.specimens.given ? Json(io::digest(io::read_specimen(specimen.file)))
                                                        : Json(specimen.recipe.resolved));
-  for (const sheet::Loading& loading : setup.loadings)
-    asked["protocols"][loading.name + loading.suffix] = loading.protocol.resolved;
+  for (const sheet::TestVariant& variant : setup.variants)
+    asked["protocols"][variant.name + variant.suffix] = variant.protocol.resolved;
   return asked;
 }
 
@@ -204,29 +206,32 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
   return std::to_string(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
-void tell_size(const SheetSetup& setup, std::size_t tests) {
+void tell_size(const SheetSetup& setup, const std::vector<SheetTest>& tests) {
   const std::size_t densities = setup.specimens.groups.size(), specimens = setup.specimens.all.size();
+  std::vector<std::size_t> of_specimen(specimens);
+  for (const SheetTest& test : tests) ++of_specimen[test.specimen];
   tell(counted(densities, "density", "densities") + ", " + counted(specimens, "specimen") + ", " +
-       counted(tests, "test") + ", up to " + std::to_string(setup.loadings.size()) + " on a specimen");
+       counted(tests.size(), "test") + ", up to " +
+       std::to_string(*std::max_element(of_specimen.begin(), of_specimen.end())) + " on a specimen");
   for (const std::string& remark : setup.remarks) tell(remark);
 }
 
 sheet::Test made_test(const SheetSetup& setup, const SheetTest& planned, protocol::TestRun&& run) {
   const SheetSpecimen& specimen = setup.specimens.all[planned.specimen];
   const SpecimenGroup& group = setup.specimens.groups[specimen.group];
-  const sheet::Loading& loading = setup.loadings[planned.loading];
+  const sheet::TestVariant& variant = setup.variants[planned.variant];
   sheet::Test test;
   test.name = planned.name;
-  test.purpose = setup.plan.tests[loading.row].purpose;
+  test.purpose = setup.plan.tests[variant.row].purpose;
   test.density = specimen.group;
   test.density_name = group.name;
   test.relative_density = group.relative_density;
   test.seed = specimen.seed;
-  test.pressure = loading.pressure;
-  test.amplitude = loading.amplitude;
+  test.pressure = variant.pressure;
+  test.amplitude = variant.amplitude;
   if (!run.result.records.empty()) test.void_ratio = run.result.records.front().void_ratio;
   test.dimension = setup.specimens.dimension;
-  test.protocol = loading.protocol;
+  test.protocol = variant.protocol;
   test.result = std::move(run.result);
   return test;
 }
@@ -242,13 +247,13 @@ std::optional<std::vector<sheet::Test>> made_tests(const SheetArguments& argumen
   for (const SheetTest& each : planned) {
     const std::string& specimen = setup.specimens.all[each.specimen].file;
     const std::size_t number = tests.size();
-    RecordedTest test{{each.name, &setup.loadings[each.loading].protocol,
+    RecordedTest test{{each.name, &setup.variants[each.variant].protocol,
                        [&cost, &specimen, number] {
                          cost->begins(number);
                          return io::read_specimen(specimen);
                        }},
                       (fs::path(arguments.folder) / "tests" / (each.name + ".h5")).string()};
-    costs.push_back({each.loading, test.file});
+    costs.push_back({each.variant, test.file});
     of_first += each.specimen == planned.front().specimen ? 1 : 0;
     tests.push_back(std::move(test));
   }
@@ -292,12 +297,13 @@ void print(const SheetArguments& arguments, const sheet::Sheet& sheet) {
 }
 
 void run_sheet(const SheetArguments& arguments) {
+  if (sheet::Sheet empty; !arguments.beside.empty()) sheet::add_measured(empty, arguments.beside);  // its mistakes
   SheetSetup setup = setup_of(arguments);
   prepare_folder(arguments, setup);
   std::vector<SheetTest> tests = tests_of(setup);
   const Ranks ranks = arguments.share ? launched_ranks() : Ranks{};
   const unsigned threads = arguments.threads > 0 ? arguments.threads : threads_of(ranks);
-  if (ranks.rank == 0) tell_size(setup, tests.size());
+  if (ranks.rank == 0) tell_size(setup, tests);
   std::vector<std::string> failures;
   const std::size_t planned = tests.size();
   const std::vector<std::string> unpacked = pack_specimens(setup.specimens, threads, arguments.share);
@@ -312,6 +318,7 @@ void run_sheet(const SheetArguments& arguments) {
   sheet::Sheet sheet = sheet::numbers_of(*made, setup.specimens.soil);
   sheet.remarks.insert(sheet.remarks.end(), setup.remarks.begin(), setup.remarks.end());
   sheet.remarks.insert(sheet.remarks.end(), failures.begin(), failures.end());
+  if (!arguments.beside.empty()) sheet::add_measured(sheet, arguments.beside);
   sheet::write_sheet(sheet, {}, arguments.folder);
   print(arguments, sheet);
   if (made->size() < planned)
@@ -336,6 +343,8 @@ void add_sheet(CLI::App& app) {
   command.add_option("--plan", arguments->plan,
                      "PLAN.toml, or the name of an installed one: standard (default), quick");
   command.add_flag("--quick", arguments->quick, "as --plan quick: few grains, within minutes")->excludes("--plan");
+  command.add_option("--beside", arguments->beside,
+                     "MEASURED.toml: numbers and curves of a laboratory to draw beside those of the sheet");
   add_set(command, arguments->settings, "pack.number=2000 of the recipe, sheet.seeds=5 of the plan");
   add_threads(command, arguments->threads, "specimens or tests at a time; default: one per core");
   command.add_flag("--force", arguments->force, "start again in a folder that holds a sheet; its tests are removed");

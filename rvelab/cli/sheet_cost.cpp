@@ -29,7 +29,7 @@ void SheetCost::begins(std::size_t test) {
   // One that another process has in hand, or that was begun before, tells no time.
   if (here.whole && complete(here.test)) {
     const double seconds = std::chrono::duration<double>(now - here.when).count();
-    of_loading_[tests_[here.test].loading].add(seconds);
+    of_variant_[tests_[here.test].variant].add(seconds);
     all_.add(seconds);
     if (all_.tests >= first_ && !told_) tell_rest();
   }
@@ -42,8 +42,8 @@ void SheetCost::tell_rest() {
   std::size_t left = 0;
   for (std::size_t k = 0; k < tests_.size(); ++k) {
     if (done_[k]) continue;
-    const auto same = of_loading_.find(tests_[k].loading);
-    rest += same != of_loading_.end() ? same->second.mean() : all_.mean();
+    const auto same = of_variant_.find(tests_[k].variant);
+    rest += same != of_variant_.end() ? same->second.mean() : all_.mean();
     ++left;
   }
   const std::size_t lanes = lanes_ * processes_;

@@ -13,7 +13,7 @@ namespace rvelab::cli {
 class SheetCost {
  public:
   struct Planned {
-    std::size_t loading = 0;  ///< tests of the same one take the same time
+    std::size_t variant = 0;  ///< tests of the same one take the same time
     std::string file;         ///< of its records
   };
   /// `first`: tests of which the time must be known before anything is said. `lanes`: tests at a time of this process,
@@ -43,7 +43,7 @@ class SheetCost {
   const std::size_t first_, lanes_, processes_;
   bool told_ = false;
   Sum all_;
-  std::map<std::size_t, Sum> of_loading_;
+  std::map<std::size_t, Sum> of_variant_;
   std::map<std::thread::id, Begun> running_;
   std::mutex mutex_;
 };

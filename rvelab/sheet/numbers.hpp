@@ -1,4 +1,4 @@
-// The numbers of a data sheet, read off its tests.
+// The numbers of a data sheet, of the tests that were made.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace rvelab::sheet {
 
-/// Numbers and figures of the tests. `soil`: name of the recipe.
+/// Numbers and figures of a soil from its tests; those in the same order give the same bits. A remark for each group
+/// that the tests do not give. Definitions and sources: the page "The numbers of a data sheet" of the manual.
 Sheet numbers_of(const std::vector<Test>& tests, const std::string& soil);
 
 }  // namespace rvelab::sheet

@@ -57,7 +57,7 @@ bool is_of_plan(const std::string& assignment);
 Plan read_plan(toml::table file, const std::string& path, const std::vector<std::string>& assignments = {});
 
 /// A test of the plan at one pressure and amplitude: what one specimen goes through.
-struct Loading {
+struct TestVariant {
   std::size_t row = 0;         ///< of Plan::tests
   double pressure = unknown;   ///< Pa, at the start
   double amplitude = unknown;  ///< of cycles
@@ -67,10 +67,10 @@ struct Loading {
   std::string name, suffix;  ///< "drained", "_100kPa"
 };
 
-/// Every loading of a plan whose protocols are paths, for specimens of a dimension; those of another one are left out.
+/// Every variant of a plan whose protocols are paths, for specimens of a dimension; those of another one are left out.
 /// `remarks` gets a sentence for each that is replaced, and for each purpose that no test is left for. InputError: a
 /// protocol is wrong, or does not give what its purpose asks for; none is left.
-std::vector<Loading> loadings_of(const Plan& plan, int dimension, std::vector<std::string>& remarks);
+std::vector<TestVariant> variants_of(const Plan& plan, int dimension, std::vector<std::string>& remarks);
 
 /// Whether specimens of a density, by its name, and of a number from 0 within it, go through a test. A name that the
 /// plan has not, of given specimens, goes through all.

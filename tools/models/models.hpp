@@ -15,7 +15,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 enum class Loading { isotropic, oedometer, drained, undrained, cyclic_shear };
 
 /// A test as an element of a continuum sees it, mean over specimens. Rows in the order of the test. Axisymmetric:
-/// q = sigma_a - sigma_r, p = (sigma_a + 2 sigma_r)/3, eps_v = eps_a + 2 eps_r.
+/// q = sigma_a - sigma_r, p = (sigma_a + 2 sigma_r)/3. Strains of a laboratory: eps_a = 1 - F_aa, eps_v = 1 - det F, so
+/// that e = e0 - (1 + e0) eps_v.
 struct ElementTest {
   std::string name;
   Loading loading = Loading::drained;
@@ -46,18 +47,21 @@ struct Fit {
   std::string model;  ///< "Mohr-Coulomb", ...
   std::vector<Parameter> parameters;
   std::vector<Misfit> misfits;          ///< in the order of the tests
-  std::vector<ElementTest> calculated;  ///< the same tests by the model
+  std::vector<ElementTest> calculated;  ///< the same tests by the model, without rows that are not finite
+  std::vector<std::string> remarks;     ///< what a user of the parameters has to know, a sentence each
 };
 
 /// Names of models: "mohr_coulomb", "hardening_soil_small", "norsand", "hypoplasticity".
 const std::vector<std::string>& names();
 
 /// `numbers`: of the data sheet by their keys, where it has them ("phi_cs_deg", "critical_line_e_G", ...): first
-/// guesses, and what a model takes from them as it is. InputError: no such model (names the nearest), or tests that
-/// do not suffice.
+/// guesses, and what a model takes from them as it is (README.md lists them). Mohr-Coulomb and Hardening Soil know no
+/// void ratio: give them tests of one density. InputError: no such model (names the nearest), or tests that do not
+/// suffice.
 Fit fit(std::string_view model, const std::vector<ElementTest>& tests, const std::map<std::string, double>& numbers);
 
-/// Input to paste: of "calculix" and "abaqus" where these have the model, else a table. "": it has no such card.
+/// Input to paste. Host "calculix" or "abaqus": its material, "" where it does not have the model; "table": the
+/// parameters of any model under the names of codes that have it, in kPa. InputError: no such host.
 std::string card(const Fit& fit, std::string_view host);
 
 }  // namespace rvelab::models

@@ -68,10 +68,10 @@ protocol::Protocol protocol_of(const PlanTest& test, const std::string& path,
   }
 }
 
-/// One loading: the protocol with pressure and amplitude.
-Loading loading(const Plan& plan, std::size_t row, const std::string& path, double pressure, double amplitude) {
+/// One variant: the protocol with pressure and amplitude.
+TestVariant variant(const Plan& plan, std::size_t row, const std::string& path, double pressure, double amplitude) {
   const PlanTest& test = plan.tests[row];
-  Loading made{row, pressure, amplitude, {}, test.name, ""};
+  TestVariant made{row, pressure, amplitude, {}, test.name, ""};
   std::vector<std::string> settings = test.settings;
   if (pressure > 0) {
     settings.push_back("test.pressure_Pa=" + io::exact(pressure));
@@ -100,12 +100,12 @@ std::string name_of(const std::string& path) { return std::filesystem::path(path
 
 }  // namespace
 
-std::string Loading::name_with(const std::string& density, std::size_t number) const {
+std::string TestVariant::name_with(const std::string& density, std::size_t number) const {
   return name + "_" + density + suffix + "_s" + std::to_string(number + 1);
 }
 
-std::vector<Loading> loadings_of(const Plan& plan, int dimension, std::vector<std::string>& remarks) {
-  std::vector<Loading> loadings;
+std::vector<TestVariant> variants_of(const Plan& plan, int dimension, std::vector<std::string>& remarks) {
+  std::vector<TestVariant> variants;
   std::vector<std::string> left_out(purpose_names().size());  // why, of each purpose
   std::vector<bool> served(left_out.size(), false);
   for (std::size_t row = 0; row < plan.tests.size(); ++row) {
@@ -126,14 +126,14 @@ std::vector<Loading> loadings_of(const Plan& plan, int dimension, std::vector<st
     const std::vector<double> none{unknown};
     for (const double pressure : test.pressures.empty() ? none : test.pressures)
       for (const double amplitude : test.amplitudes.empty() ? none : test.amplitudes)
-        loadings.push_back(loading(plan, row, path, pressure, amplitude));
+        variants.push_back(variant(plan, row, path, pressure, amplitude));
   }
   for (std::size_t purpose = 0; purpose < served.size(); ++purpose)
     if (!served[purpose] && !left_out[purpose].empty()) remarks.push_back(left_out[purpose]);
-  if (loadings.empty())
+  if (variants.empty())
     throw InputError(plan.path + ": every test is left out for grains in " + (dimension == 2 ? "the plane" : "space") +
                      "; allowed: one protocol or more of their dimension; give protocol_2D, or another plan");
-  return loadings;
+  return variants;
 }
 
 bool goes_through(const Plan& plan, const PlanTest& test, const std::string& density, std::size_t number) {
