@@ -161,7 +161,9 @@ Json group_json(const Sheet& sheet, const std::string& name) {
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     std::string tests = report::counted(names.size(), "test");
-    for (std::size_t k = 0; k < names.size(); ++k) tests += (k == 0 ? ": " : ", ") + names[k];
+    constexpr std::size_t named = 9;  // of long lists the first; summary.json has all
+    for (std::size_t k = 0; k < std::min(named, names.size()); ++k) tests += (k == 0 ? ": " : ", ") + names[k];
+    if (names.size() > named) tests += ", ...";
     about.push_back({own.front()->label, key, own.front()->definition, own.front()->source, tests});
     if (by_pressures(own)) matrices.push_back(matrix_of(own));
     for (const Number* number : own) {

@@ -48,7 +48,8 @@ std::vector<Readings> parted(const Readings& readings, Same same) {
       part->push_back(reading);
   }
   const auto place = [](const Readings& part) {
-    return std::pair(part.front().test->density, part.front().test->pressure);
+    const double pressure = part.front().test->pressure;
+    return std::pair(part.front().test->density, std::isnan(pressure) ? -1 : pressure);
   };
   std::stable_sort(parts.begin(), parts.end(),
                    [&](const Readings& one, const Readings& other) { return place(one) < place(other); });
@@ -99,6 +100,19 @@ bool add_number(Sheet& sheet, Number number) {
   return true;
 }
 
+Test at_abscissa(const Test& test, double abscissa) {
+  Test place;
+  place.name = test.name;
+  place.purpose = test.purpose;
+  place.density = test.density;
+  place.density_name = test.density_name;
+  place.relative_density = test.relative_density;
+  place.seed = test.seed;
+  place.dimension = test.dimension;
+  place.pressure = abscissa;
+  return place;
+}
+
 std::vector<TestGroup> groups_of(const std::vector<Test>& tests, Purpose purpose) {
   Readings all;
   for (const Test& test : tests)
@@ -143,13 +157,14 @@ void add_by_pressure(Sheet& sheet, const About& about, const Readings& readings)
 
 Straight straight_through(std::span<const double> x, std::span<const double> y) {
   const auto n = double(x.size());
-  double middle = 0, mean = 0, variance = 0, product = 0;
+  double middle = 0, mean = 0, variance = 0, product = 0, squares = 0;
   for (std::size_t k = 0; k < x.size(); ++k) middle += x[k] / n, mean += y[k] / n;
   for (std::size_t k = 0; k < x.size(); ++k) {
+    squares += x[k] * x[k];
     variance += (x[k] - middle) * (x[k] - middle);
     product += (x[k] - middle) * (y[k] - mean);
   }
-  if (x.size() < 2 || !(variance > 1e-9 * n * (1 + middle * middle))) return {unknown, unknown};
+  if (x.size() < 2 || !(variance > 1e-12 * squares)) return {unknown, unknown};
   const double slope = product / variance;
   return {mean - slope * middle, slope};
 }
@@ -161,6 +176,9 @@ Straight power_law(const Readings& readings, double reference) {
     x.push_back(std::log(reading.at / reference));
     y.push_back(std::log(reading.value));
   }
+  // Abscissae that differ by what a test misses its pressure give no slope.
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  if (x.empty() || *high - *low < std::log(1.05)) return {unknown, unknown};
   const Straight line = straight_through(x, y);
   return {std::exp(line.intercept), line.slope};
 }

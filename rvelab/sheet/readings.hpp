@@ -42,6 +42,10 @@ Number number_of(const About& about, const Readings& readings,
 /// Appends it if it has a value.
 bool add_number(Sheet& sheet, Number number);
 
+/// The name, density and seed of a test without its records, at another abscissa than its pressure: by_pressure() and
+/// mean_series() then go by this one.
+Test at_abscissa(const Test& test, double abscissa);
+
 /// Tests of one purpose at one density and pressure, the seeds in their order.
 struct TestGroup {
   std::vector<const Test*> tests;
@@ -63,7 +67,8 @@ struct Straight {
 };
 Straight straight_through(std::span<const double> x, std::span<const double> y);
 
-/// Of y = a (x/reference)^slope, by the logarithms of positive readings: `intercept` is a.
+/// Of y = a (x/reference)^slope, by the logarithms of positive readings: `intercept` is a. NaN where the abscissae
+/// differ by less than 5 %.
 Straight power_law(const Readings& readings, double reference);
 
 /// The value of a measure (ensemble::measures()).

@@ -67,19 +67,11 @@ double void_ratio_function(double e, int dimension) { return dimension == 2 ? 1 
 
 void add_probes(const std::vector<Test>& tests, Sheet& sheet) {
   Readings moduli, normalised;
-  std::vector<Test> at_pressures;  // copies that carry the pressure of a probe
+  std::vector<Test> at_pressures;  // of the probes
   const std::vector<Probed> all = probed_moduli(tests);
   at_pressures.reserve(all.size());
   for (const Probed& probed : all) {
-    Test place;
-    place.name = probed.test->name;
-    place.density = probed.test->density;
-    place.density_name = probed.test->density_name;
-    place.relative_density = probed.test->relative_density;
-    place.seed = probed.test->seed;
-    place.dimension = probed.test->dimension;
-    place.pressure = std::isfinite(probed.pressure) ? probed.pressure : probed.p;
-    at_pressures.push_back(std::move(place));
+    at_pressures.push_back(at_abscissa(*probed.test, std::isfinite(probed.pressure) ? probed.pressure : probed.p));
     const Test* const test = &at_pressures.back();
     moduli.push_back({test, probed.G, unknown, probed.p});
     normalised.push_back({test, probed.G / void_ratio_function(probed.void_ratio, test->dimension), unknown, probed.p});
@@ -215,40 +207,8 @@ void add_published_decay(Figure& ratio, Figure& damping) {
       {"Seed and Idriss 1970, lower", strains, {0.5, 0.6, 0.8, 1.4, 2.8, 5.3, 10, 15.8, 21.5}, {}, true, true});
 }
 
-void add_decay(const std::vector<Test>& tests, Sheet& sheet) {
-  const std::vector<Specimen> specimens = specimens_of(tests);
-  if (specimens.empty()) {
-    sheet.remarks.push_back("G over strain, damping and gamma_0.7 are left out: no test has whole loops of strain.");
-    return;
-  }
-  Readings strains;
-  std::vector<Test> at_strains;  // copies whose pressure is the amplitude, so that means are those of one amplitude
-  std::size_t count = 0;
-  for (const Specimen& loops : specimens) count += loops.size();
-  at_strains.reserve(count);
-  Readings ratios, dampings;
-  for (const Specimen& loops : specimens) {
-    strains.push_back({loops.front().test, strain_at_part(loops, 0.722)});
-    Specimen moved = loops;
-    for (Decay& loop : moved) loop.G += loop.stress_error / loop.gamma;
-    strains.back().error = std::abs(strain_at_part(moved, 0.722) - strains.back().value);
-    for (const Decay& loop : loops) {
-      Test place;
-      place.name = loop.test->name;
-      place.density = loop.test->density;
-      place.density_name = loop.test->density_name;
-      place.seed = loop.test->seed;
-      place.dimension = loop.test->dimension;
-      place.pressure = loop.gamma;
-      at_strains.push_back(std::move(place));
-      ratios.push_back({&at_strains.back(), loop.G / loop.G0, unknown, loop.gamma});
-      dampings.push_back({&at_strains.back(), loop.damping, unknown, loop.gamma});
-    }
-  }
-  add_by_density(sheet, threshold, strains);
-  if (std::none_of(strains.begin(), strains.end(), [](const Reading& each) { return std::isfinite(each.value); }))
-    sheet.remarks.push_back(
-        "gamma_0.7 is left out: G/G0 does not pass 0.722 between the smallest and the largest strain.");
+/// `strains`: one reading for each specimen, of its first test.
+void add_decay_figures(const std::vector<Specimen>& specimens, const Readings& strains, Sheet& sheet) {
   const char* const strain_axis = "amplitude of the shear strain (%)";
   Figure ratio{"decay",
                "Shear modulus over strain",
@@ -268,13 +228,49 @@ void add_decay(const std::vector<Test>& tests, Sheet& sheet) {
                  false,
                  {},
                  small_strain_group};
-  for (const Readings& part : by_density(ratios))
-    ratio.series.push_back(mean_series(part, 100, 1, density_label(*part.front().test)));
-  for (const Readings& part : by_density(dampings))
-    damping.series.push_back(mean_series(part, 100, 100, density_label(*part.front().test)));
+  for (const Readings& part : by_pressure(strains)) {
+    std::vector<Test> places;
+    std::vector<const Decay*> own;
+    for (const Specimen& loops : specimens)
+      for (const Decay& loop : loops)
+        if (std::any_of(part.begin(), part.end(),
+                        [&](const Reading& each) { return each.test == loops.front().test; })) {
+          places.push_back(at_abscissa(*loop.test, loop.gamma));
+          own.push_back(&loop);
+        }
+    Readings ratios, dampings;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      ratios.push_back({&places[k], own[k]->G / own[k]->G0, unknown, own[k]->gamma});
+      dampings.push_back({&places[k], own[k]->damping, unknown, own[k]->gamma});
+    }
+    const Test& first = *part.front().test;
+    const std::string name = density_label(first) + ", " + pressure_label(first.pressure);
+    ratio.series.push_back(mean_series(ratios, 100, 1, name));
+    damping.series.push_back(mean_series(dampings, 100, 100, name));
+  }
   add_published_decay(ratio, damping);
   sheet.figures.push_back(std::move(ratio));
   sheet.figures.push_back(std::move(damping));
+}
+
+void add_decay(const std::vector<Test>& tests, Sheet& sheet) {
+  const std::vector<Specimen> specimens = specimens_of(tests);
+  if (specimens.empty()) {
+    sheet.remarks.push_back("G over strain, damping and gamma_0.7 are left out: no test has whole loops of strain.");
+    return;
+  }
+  Readings strains;
+  for (const Specimen& loops : specimens) {
+    Specimen moved = loops;
+    for (Decay& loop : moved) loop.G += loop.stress_error / loop.gamma;
+    const double strain = strain_at_part(loops, 0.722);
+    strains.push_back({loops.front().test, strain, std::abs(strain_at_part(moved, 0.722) - strain)});
+  }
+  add_by_density(sheet, threshold, strains);
+  if (std::none_of(strains.begin(), strains.end(), [](const Reading& each) { return std::isfinite(each.value); }))
+    sheet.remarks.push_back(
+        "gamma_0.7 is left out: G/G0 does not pass 0.722 between the smallest and the largest strain.");
+  add_decay_figures(specimens, strains, sheet);
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 //
 //   E50     secant from the start to half of the largest increase of q, over the axial strain
 //   E50_ref, m   least squares of ln E50 in ln(sigma_3/p_ref) over the pressures of a density
-//   R_f = q_f/q_a   of the hyperbola q = eps/(a + b eps), q_a = 1/b, through 70 and 95 % of q_f (Duncan and Chang 1970)
+//   R_f = q_f/q_a   of the hyperbola q = eps/(a + b eps), q_a = 1/b: least squares of eps/q in eps from 70 to 95 % of
+//           q_f (Duncan and Chang 1970, who take these two points)
 //   E_oed   secant of the first loading between 0.64 and 1.44 p_ref: the tangent at p_ref where E goes as sqrt(sigma)
 //   K0nc = sigma_h/sigma_v at the end of the first loading
 //   nu_ur = r/(1 + r), r = change of sigma_h over that of sigma_v    oedometer, unloading to half of the largest
@@ -38,7 +39,7 @@ constexpr About exponent{
     stiffness_group, "exponent_m", "exponent m", "", "of E\u2085\u2080 in \u03c3\u2083, over the pressures",
     hardening_soil};
 constexpr About failure_ratio{
-    stiffness_group,        "R_f", "failure ratio R_f", "", "q_f/q_a, q_a of the hyperbola through 70 and 95 % of q_f",
+    stiffness_group,        "R_f", "failure ratio R_f", "", "q_f/q_a, q_a of the hyperbola from 70 to 95 % of q_f",
     "Duncan and Chang 1970"};
 constexpr About oedometric{stiffness_group,
                            "Eoed_ref_Pa",
@@ -62,16 +63,6 @@ constexpr About at_rest{
     stiffness_group, "K0nc", "K\u2080 of first loading", "", "\u03c3_h/\u03c3_v of the oedometer at its largest stress",
     "Jaky 1944"};
 
-/// Strain at which q, less that of the start, first reaches a part of its largest.
-double strain_at(std::span<const records::Record> records, const std::vector<double>& q, double part) {
-  const double wanted = part * *std::max_element(q.begin(), q.end());
-  for (std::size_t k = 1; k < q.size(); ++k)
-    if (q[k] >= wanted)
-      return std::lerp(records[k - 1].strain, records[k].strain, (wanted - q[k - 1]) / (q[k] - q[k - 1])) -
-             records.front().strain;
-  return unknown;
-}
-
 std::vector<double> deviators(const Test& test, std::span<const records::Record> records) {
   std::vector<double> q;
   for (const records::Record& record : records) q.push_back(axial_stress(test, record) - lateral_stress(test, record));
@@ -79,13 +70,20 @@ std::vector<double> deviators(const Test& test, std::span<const records::Record>
   return q;
 }
 
+/// Slope of eps/q over eps from the first record at 70 % of the largest q to the first at 95 %, times this q.
 double failure_ratio_of(const Test& test) {
   const auto records = last_records(test);
   const std::vector<double> q = deviators(test, records);
   const double largest = *std::max_element(q.begin(), q.end());
-  const double early = strain_at(records, q, 0.7), late = strain_at(records, q, 0.95);
-  const double b = (late / (0.95 * largest) - early / (0.7 * largest)) / (late - early);
-  const double ratio = b * largest;
+  std::vector<double> strains, compliances;
+  for (std::size_t k = 1; k < q.size(); ++k) {
+    const double strain = records[k].strain - records.front().strain;
+    if ((strains.empty() && q[k] < 0.7 * largest) || !(q[k] > 0)) continue;
+    strains.push_back(strain);
+    compliances.push_back(strain / q[k]);
+    if (q[k] >= 0.95 * largest) break;
+  }
+  const double ratio = straight_through(strains, compliances).slope * largest;
   return ratio > 0 && ratio <= 1 ? ratio : unknown;
 }
 
@@ -112,8 +110,7 @@ void add_compression(const std::vector<Test>& tests, Sheet& sheet) {
       std::count_if(ratios.begin(), ratios.end(), [](const Reading& each) { return std::isnan(each.value); });
   if (without > 0)
     sheet.remarks.push_back(std::to_string(without) + " of " + std::to_string(ratios.size()) +
-                            " drained tests are no hyperbola (q between 70 and 95 % of its largest is above the "
-                            "asymptote, or rises too straight): R_f is that of the others.");
+                            " drained tests are no hyperbola from 70 to 95 % of q: R_f is that of the others.");
   const auto fitted = [&](const About& about, double Straight::*part) {
     add_by_density(sheet, about, moduli,
                    [part](const Readings& own) { return power_law(own, reference_pressure).*part; });

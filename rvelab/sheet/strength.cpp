@@ -145,7 +145,7 @@ void add_bolton_figure(const Readings& angles, double critical, double A, double
   for (const Readings& part : by_density(angles)) {
     const Test& test = *part.front().test;
     figure.series.push_back(mean_series(part, 1e-3, 1, density_label(test)));
-    if (!std::isfinite(Q)) continue;
+    if (!std::isfinite(Q) || !std::isfinite(test.relative_density)) continue;
     Series line{density_label(test), {}, {}, {}, true, false};
     for (int k = 0; k <= 20; ++k) {
       const double p = low / 1.3 * std::pow(1.69 * high / low, k / 20.0);
@@ -160,10 +160,14 @@ void add_bolton_figure(const Readings& angles, double critical, double A, double
 }
 
 /// Adds Q, A and the scatter; the Q that was fitted.
-double add_bolton(const Readings& angles, double critical, Sheet& sheet) {
+double add_bolton(const Readings& all, double critical, Sheet& sheet) {
   std::set<double> densities;
-  for (const Reading& each : angles)
-    if (std::isfinite(each.test->relative_density)) densities.insert(each.test->relative_density);
+  Readings angles;
+  for (const Reading& each : all) {
+    if (!std::isfinite(each.test->relative_density)) continue;
+    densities.insert(each.test->relative_density);
+    angles.push_back(each);
+  }
   if (densities.size() < 2 || !std::isfinite(critical)) {
     sheet.remarks.push_back(
         !std::isfinite(critical) ? "Bolton's relation is left out: it needs the critical friction angle."

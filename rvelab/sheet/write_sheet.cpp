@@ -32,6 +32,7 @@ std::string joined_names(const std::vector<std::string>& names) {
 Json exact_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json as_json(const Number& number) {
+  const bool judged = std::isfinite(number.published) && std::isfinite(number.low);
   return {{"key", number.key},
           {"group", number.group},
           {"label", number.label},
@@ -46,6 +47,8 @@ Json as_json(const Number& number) {
           {"calculation_error", exact_number(number.calculation_error)},
           {"published", exact_number(number.published)},
           {"published_by", number.published_by.empty() ? Json() : Json(number.published_by)},
+          {"published_within_interval",
+           judged ? Json(number.low <= number.published && number.published <= number.high) : Json()},
           {"tests", number.tests},
           {"definition", number.definition},
           {"source", number.source}};

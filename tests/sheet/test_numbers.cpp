@@ -322,7 +322,23 @@ TEST_CASE("a sheet of no test has no number, and says so of every group; one of 
     record.stress(1, 1) = -20e3 - std::min(deviator_at(25, 20e3), 1e7 * record.strain);
     plane.result.records.push_back(record);
   }
-  const Sheet sheet = numbers_of({plane}, "discs");
+  Test oedometer = plane;
+  oedometer.purpose = Purpose::oedometer;
+  oedometer.name = "oedometer";
+  oedometer.result.records.clear();
+  for (const double stress : {20e3, 100e3, 200e3, 100e3}) {  // K0 of 0.5, unloading with nu = 0.3
+    records::Record record;
+    record.stage = 1;
+    record.strain = 1e-8 * stress;
+    record.deformation_gradient(1, 1) = 1 - record.strain;
+    const bool unloads = !oedometer.result.records.empty() && oedometer.result.records.back().stress(1, 1) == -200e3;
+    record.stress(0, 0) = unloads ? -70e3 : -0.5 * stress;
+    record.stress(1, 1) = -stress;
+    oedometer.result.records.push_back(record);
+  }
+  const Sheet sheet = numbers_of({plane, oedometer}, "discs");
+  CHECK(the(sheet, "K0nc", "dense").mean == Approx(0.5));
+  CHECK(the(sheet, "nu_ur", "dense").mean == Approx(0.3));
   CHECK(the(sheet, "phi_peak_deg", "dense", 20e3).mean == Approx(25));
   CHECK(!has(sheet, "M_tc"));
   CHECK(remarks(sheet, "The grains are discs"));

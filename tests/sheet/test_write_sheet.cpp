@@ -85,7 +85,10 @@ Test drained(const char* name, std::size_t density, std::uint64_t seed, double p
 TEST_CASE("summary.json and summary.csv hold every number in full, undefined values as null and as empty cells") {
   Sheet made = made_sheet();
   made.numbers[0].mean = 31.000000000000004;
+  made.numbers[0].published = 31.5;
   const auto json = nlohmann::json::parse(json_of_sheet(made, {}));
+  CHECK(json["numbers"][0]["published_within_interval"] == true);
+  CHECK(json["numbers"][1]["published_within_interval"].is_null());
   CHECK(json["soil"] == made.soil);
   CHECK(json["numbers"][0]["mean"] == 31.000000000000004);
   CHECK(json["numbers"][1]["low_95"].is_null());
