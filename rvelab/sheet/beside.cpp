@@ -97,7 +97,9 @@ Figure* figure_in(Sheet& sheet, const std::string& key) {
 
 void place_number(Sheet& sheet, const PublishedNumber& published) {
   bool placed = false, known = false;
+  std::vector<std::string> names;
   for (Number& number : sheet.numbers) {
+    names.push_back(number.key);
     if (number.key != published.key) continue;
     known = true;
     const bool same_density = published.density.empty() || number.density_name == published.density;
@@ -109,8 +111,9 @@ void place_number(Sheet& sheet, const PublishedNumber& published) {
     placed = true;
   }
   if (!placed)
-    sheet.remarks.push_back("The published " + published.key + " stands beside no number: the sheet has " +
-                            (known ? "none of this density and pressure." : "none of this name."));
+    sheet.remarks.push_back("The published " + published.key + " stands beside no number: the sheet has none of this " +
+                            (known ? "density and pressure" : "name" + keys::nearest_in_words(published.key, names)) +
+                            ".");
 }
 
 /// Figure of a curve, and the factors to the units of its axes; "": no figure shows it.
@@ -173,8 +176,10 @@ void place_curve(Sheet& sheet, const MeasuredCurve& measured, const std::string&
 void place_points(Sheet& sheet, const PublishedPoints& points) {
   Figure* const figure = figure_in(sheet, points.figure);
   if (figure == nullptr) {
+    std::vector<std::string> names;
+    for (const Figure& each : sheet.figures) names.push_back(each.key);
     sheet.remarks.push_back("The points " + points.name + " are not drawn: the sheet has no figure " + points.figure +
-                            ".");
+                            keys::nearest_in_words(points.figure, names) + ".");
     return;
   }
   figure->series.push_back({points.name, points.x, points.y, {}, points.line, true});

@@ -169,14 +169,15 @@ TEST_CASE("published numbers and measured curves stand beside those of the sheet
       << "[[number]]\nkey = \"phi_cs_deg\"\nvalue = 33\nby = \"Li and Wang 1998\"\n[[number]]\nkey = \"phi_peak_deg\"\n"
          "value = 40\npressure_Pa = 200e3\n[[measured]]\nname = \"TMD\"\ntest = \"drained\"\ncurve = \"curve.csv\"\n"
          "[[points]]\nname = \"P\"\nfigure = \"drained_q\"\nx = [1, 2]\ny = [3, 4]\n[[points]]\nname = \"Q\"\nfigure = "
-         "\"none\"\nx = [1]\ny = [3]\n";
+         "\"drained\"\nx = [1]\ny = [3]\n[[number]]\nkey = \"phi_cs\"\nvalue = 3\n";
   Sheet made = made_sheet();
   add_measured(made, folder / "beside.toml");
   CHECK(made.numbers[0].published == 33);
   CHECK(std::isnan(made.numbers[1].published));
-  REQUIRE(made.remarks.size() == 2);
+  REQUIRE(made.remarks.size() == 3);
   CHECK(made.remarks[0].find("phi_peak_deg stands beside no number") != std::string::npos);
-  CHECK(made.remarks[1].find("no figure none") != std::string::npos);
+  CHECK(made.remarks[1].find("none of this name; the nearest is phi_cs_deg") != std::string::npos);
+  CHECK(made.remarks[2].find("no figure drained; the nearest is drained_q") != std::string::npos);
   const auto& series = made.figures[0].series;
   REQUIRE(series.size() == 3);
   CHECK(series[1].measured);
