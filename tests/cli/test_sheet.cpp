@@ -144,6 +144,7 @@ TEST_CASE("A folder of another sheet, a plan or a recipe with a mistake are refu
   here.refuses(command + "B --set stage.compression.to_strain=0.1", "is a key of a protocol", "test.drained.settings");
   here.refuses(command + "B --set 'test.drained.settings=[\"stage.cmpression.to_strain=0.1\"]'",
                "test.drained: ", "names no stage");
+  here.refuses(command + "B --set 'test.drained.pressures_Pa=[100e3, 100.00001e3]'", "two tests are called");
   here.refuses("sheet none.h5 --plan plan.toml -o B", "none.h5");
   here.refuses("sheet pack_dense --quick -o B", "density.loose", "target.relative_density", "target.e_min");
   here.refuses("sheet pack_dense --plan plan.toml -o plan.toml", "plan.toml");
