@@ -103,9 +103,9 @@ ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
   };
   if (!add(line_void_ratio, LineForm::power, &ensemble::CriticalLine::Gamma)) {
     sheet.remarks.push_back(
-        "The critical state line and state parameters are left out: no specimen gives end states at two pressures or "
-        "more "
-        "(drained at several pressures, or undrained, to 12 % of strain).");
+        "The critical state line and state parameters are left out: no specimen has end states at two pressures "
+        "(drained "
+        "at several pressures, or undrained, to 12 % of strain).");
     return {LineForm::power, unknown, unknown, unknown};
   }
   line.Gamma = sheet.numbers.back().mean;

@@ -92,7 +92,8 @@ void bring_to_common_strains(std::vector<Rows>& all) {
 }
 
 bool rises(const Rows& rows) {
-  return rows.strain.size() > 2 && std::is_sorted(rows.strain.begin(), rows.strain.end(), std::less_equal<>());
+  const auto& strain = rows.strain;
+  return strain.size() > 2 && std::adjacent_find(strain.begin(), strain.end(), std::greater_equal<>()) == strain.end();
 }
 
 Loading loading_of_purpose(Purpose purpose) {

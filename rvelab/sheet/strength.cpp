@@ -118,8 +118,9 @@ void add_critical_angle(const std::vector<Test>& tests, Sheet& sheet) {
                }));
   if (steady.empty())
     sheet.remarks.push_back(
-        "No drained test has reached a steady void ratio (its change over the last eighth of the "
-        "strain is above " +
+        "No drained test has reached a steady void ratio (its means over the last two eighths of the strain differ by "
+        "more "
+        "than " +
         in_words(steady_void_ratio) + "): the critical friction angle is that of their ends, and may be too large.");
   else if (steady.size() < all.size())
     sheet.remarks.push_back("The critical friction angle is that of " + std::to_string(steady.size()) + " of " +
