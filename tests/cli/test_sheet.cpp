@@ -113,6 +113,14 @@ TEST_CASE("Given specimens are of one density where their names differ by a numb
                                  Contains("relative density of wet is not known"));
   CHECK_THAT(bytes_of(here / "A/summary.json"), Contains("wet has one specimen"));
   CHECK(std::filesystem::exists(here / "A/tests/drained_dense_200kPa_s2.h5"));
+
+  here.write("measured.toml",
+             "[[number]]\nkey = \"phi_peak_deg\"\ndensity = \"dense\"\npressure_Pa = 100e3\nvalue = 20\n"
+             "by = \"A laboratory\"\n");
+  here.succeeds("sheet 'dense_*.h5' wet.h5 --plan plan.toml -o A --resume --beside measured.toml");
+  CHECK_THAT(bytes_of(here / "A/summary.json"), Contains("A laboratory"));
+  here.write("wrong.toml", "[[numbr]]\nkey = \"phi_cs_deg\"\nvalue = 20\n");
+  here.refuses("sheet 'dense_*.h5' wet.h5 --plan plan.toml -o B --beside wrong.toml", "wrong.toml", "numbr");
   here.refuses("sheet dense_1.h5 dense_1.h5 --plan plan.toml -o B", "same specimen");
   here.refuses("sheet dense_1.h5 --plan plan.toml -o B --set pack.number=3", "is given with specimens");
   CHECK_FALSE(std::filesystem::exists(here / "B"));
