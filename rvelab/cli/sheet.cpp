@@ -34,6 +34,7 @@ void tell_size(const SheetSetup& setup, const std::vector<SheetTest>& tests) {
        counted(tests.size(), "test") + ", up to " +
        std::to_string(*std::max_element(of_specimen.begin(), of_specimen.end())) + " on a specimen");
   for (const std::string& remark : setup.remarks) tell(remark);
+  if (!setup.note.empty()) tell(setup.note);
 }
 
 sheet::Test made_test(const SheetSetup& setup, const SheetTest& planned, protocol::TestRun&& run) {
@@ -136,8 +137,8 @@ void run_sheet(const SheetArguments& arguments) {
   for (const std::string& failure : failures) tell(failure);
   if (made->empty()) throw Error(arguments.folder + ": no test could be carried out, so there is no sheet");
   sheet::Sheet sheet = sheet::numbers_of(*made, setup.specimens.soil);
-  sheet.remarks.insert(sheet.remarks.end(), setup.remarks.begin(), setup.remarks.end());
-  sheet.remarks.insert(sheet.remarks.end(), failures.begin(), failures.end());
+  for (const auto* each : {&setup.remarks, &failures})
+    for (const std::string& remark : *each) sheet.remarks.push_back(remark + ".");
   if (!arguments.beside.empty()) sheet::add_measured(sheet, arguments.beside);
   sheet::write_sheet(sheet, {}, arguments.folder);
   print(arguments, sheet);

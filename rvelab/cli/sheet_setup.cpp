@@ -79,10 +79,13 @@ void add_remarks(SheetSetup& setup) {
   std::vector<std::string> single;
   for (std::size_t k = 0; k < counts.size(); ++k)
     if (counts[k] == 1) single.push_back(specimens.groups[k].name);
-  if (!single.empty())
-    setup.remarks.push_back(keys::listed(single) +
-                            (single.size() == 1 ? " has one specimen: its" : " have one specimen each: their") +
-                            " numbers have no standard error and no interval");
+  const std::string why = keys::listed(single) +
+                          (single.size() == 1 ? " has one specimen: its" : " have one specimen each: their") +
+                          " numbers have no standard error and no interval";
+  if (single.size() == counts.size())
+    setup.note = why;  // the numbers say it themselves
+  else if (!single.empty())
+    setup.remarks.push_back(why);
   if (counts.size() == 1)
     setup.remarks.push_back("there is one density: how numbers depend on the density is not known");
 }

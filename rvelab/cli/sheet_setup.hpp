@@ -24,7 +24,8 @@ struct SheetSetup {
   sheet::Plan plan;
   std::vector<sheet::TestVariant> variants;
   SheetSpecimens specimens;
-  std::vector<std::string> remarks;  ///< what is left out, and why
+  std::vector<std::string> remarks;  ///< what is left out, and why; on the sheet too
+  std::string note;                  ///< the same, for the terminal alone; "": none
 };
 
 /// A test of the sheet: a specimen and what it goes through.
