@@ -11,14 +11,23 @@
 
 namespace rvelab::cli {
 
+namespace {
+
+/// Letters of a UTF-8 text.
+std::size_t letters_of(const std::string& text) {
+  return std::size_t(std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
 std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left, std::size_t width) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], letters_of(row[k]));
   }
   const auto padded = [&](const std::vector<std::string>& row, std::size_t k) {
-    const std::string blank(widths[k] - row[k].size(), ' ');
+    const std::string blank(widths[k] - letters_of(row[k]), ' ');
     return k < to_the_left ? row[k] + blank : blank + row[k];
   };
   std::string text;

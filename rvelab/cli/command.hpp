@@ -21,8 +21,8 @@ struct Exit : std::exception {
 void add_pack(CLI::App&app), add_clump(CLI::App&app), add_import(CLI::App&app), add_inspect(CLI::App&app),
     add_measure(CLI::App&app), add_probe(CLI::App&app), add_run(CLI::App&app), add_recover(CLI::App&app),
     add_seal(CLI::App&app), add_calibrate(CLI::App&app), add_critical(CLI::App&app), add_fit(CLI::App&app),
-    add_study(CLI::App&app), add_report(CLI::App&app), add_compare(CLI::App&app), add_export(CLI::App&app),
-    add_protocols(CLI::App&app), add_keys(CLI::App&app), add_bench(CLI::App&app);
+    add_study(CLI::App&app), add_sheet(CLI::App&app), add_report(CLI::App&app), add_compare(CLI::App&app),
+    add_export(CLI::App&app), add_protocols(CLI::App&app), add_keys(CLI::App&app), add_bench(CLI::App&app);
 
 /// Common options of several subcommands.
 void add_json(CLI::App& command, bool& json);

@@ -98,9 +98,10 @@ int carried_out(int argc, char** argv) {
       "`rvelab SUBCOMMAND --help` explains a subcommand, with examples. A first test:\n"
       "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5");
-  for (const auto add : {add_pack, add_clump, add_import, add_inspect, add_measure, add_probe, add_run, add_recover,
-                         add_seal, add_calibrate, add_critical, add_fit, add_study, add_report, add_compare, add_export,
-                         add_protocols, add_keys, add_bench})  // in the order of the help
+  for (const auto add :
+       {add_pack,    add_clump,   add_import,    add_inspect,   add_measure, add_probe, add_run,
+        add_recover, add_seal,    add_calibrate, add_critical,  add_fit,     add_study, add_sheet,
+        add_report,  add_compare, add_export,    add_protocols, add_keys,    add_bench})  // in the order of the help
     add(app);
   if (argc < 2) {
     std::cerr << app.help() << std::flush;

@@ -44,16 +44,14 @@ State taken(const RecordedTest& test, const TestOptions& options, const std::ato
   }
 }
 
-/// Tests at a time: the cores that this process is bound to, or its part of those of the machine.
-std::size_t tests_at_a_time(const TestOptions& options, const Ranks& ranks) {
-  if (options.threads > 0) return options.threads;
+}  // namespace
+
+unsigned threads_of(const Ranks& ranks) {
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   cpu_set_t bound;
   const unsigned own = sched_getaffinity(0, sizeof bound, &bound) == 0 ? unsigned(CPU_COUNT(&bound)) : cores;
   return std::max(1u, own < cores ? own : cores / ranks.on_machine);
 }
-
-}  // namespace
 
 Ranks launched_ranks() {
   constexpr const char* launchers[][3] = {
@@ -76,7 +74,8 @@ bool shared_out(const std::vector<RecordedTest>& tests, const TestOptions& optio
   if (!options.share) return true;
   const Ranks ranks = launched_ranks();
   const std::atomic<bool>& stop = stop_on_signals();
-  Workers workers(unsigned(std::min(tests_at_a_time(options, ranks), tests.size())));
+  const unsigned threads = options.threads > 0 ? options.threads : threads_of(ranks);
+  Workers workers(unsigned(std::min<std::size_t>(threads, tests.size())));
   std::vector<State> states(tests.size(), State::open);
   const auto count = [&](State state) { return std::count(states.begin(), states.end(), state); };
   const std::size_t first = tests.size() * ranks.rank / ranks.count;  // ranks begin apart

@@ -19,6 +19,8 @@ struct Ranks {
   unsigned on_machine = 1;  ///< ranks on this machine, this one included
 };
 Ranks launched_ranks();
+/// Tests at a time: the cores that this process is bound to, or its part of those of the machine.
+unsigned threads_of(const Ranks& ranks);
 
 struct RecordedTest : protocol::PlannedTest {
   std::string file;  ///< of its records; "": they are not kept

@@ -153,27 +153,6 @@ Json section_of(const std::string& name, const std::vector<Test>& tests, std::si
   return section;
 }
 
-/// Text of HTML, also within a script: escaped so that no tag can begin in it.
-std::string without_tags(std::string text) {
-  std::string safe;
-  for (const char letter : text) safe += letter == '<' ? std::string("\\u003c") : std::string(1, letter);
-  return safe;
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char letter : text)
-    safe += letter == '<' ? std::string("&lt;") : letter == '&' ? std::string("&amp;") : std::string(1, letter);
-  return safe;
-}
-
-void put(std::string& html, const std::string& mark, const std::string& text) {
-  const auto at = html.find(mark);
-  if (at == std::string::npos)
-    throw Error("report: the page in this program has no " + mark + "; build tools/report again");
-  html.replace(at, mark.size(), text);
-}
-
 }  // namespace
 
 std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
@@ -238,11 +217,7 @@ Page page_of(const std::vector<std::string>& inputs, const PageOptions& options)
     title = "Laboratory report" + (title.empty() ? "" : ": " + title);
   }
   data["title"] = title;
-  page.html = std::string(page_template());
-  put(page.html, "<!--title-->", escaped(title));
-  put(page.html, "<!--data-->",
-      "<script type=\"application/json\" id=\"data\">" +
-          without_tags(data.dump(-1, ' ', false, Json::error_handler_t::replace)) + "</script>");
+  page.html = filled(page_template(), title, data);
   return page;
 }
 

@@ -56,6 +56,7 @@ struct Number {
   std::string definition, source;        ///< one line each
   double published = unknown;            ///< --beside, or of the plan
   std::string published_by;
+  std::string group;  ///< heading on the page that it stands under: "Strength"
 };
 
 struct Series {
@@ -69,6 +70,7 @@ struct Figure {
   std::string key, title, x_label, y_label, caption;
   bool x_logarithmic = false, y_logarithmic = false;
   std::vector<Series> series;
+  std::string group;  ///< as that of the numbers
 };
 
 struct Sheet {

@@ -9,6 +9,7 @@ import { mohr } from "./mohr";
 import { rose } from "./rose";
 import { Specimen } from "./specimen";
 import { escaped } from "./svg_plot";
+import { tableOf } from "./tables";
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 
@@ -68,23 +69,6 @@ function redraw() {
   drawMohr();
   drawLoops();
   void drawRose();
-}
-
-function tableOf(rows: Table): HTMLElement {
-  const box = document.createElement("div"), table = document.createElement("table");
-  box.className = "wide";
-  rows.forEach((row, k) => {
-    if (k === 0 && row.every((cell) => !cell)) return;
-    const line = table.insertRow();
-    row.forEach((cell, column) => {
-      if (rows.length > 1 && rows.slice(1).every((other) => !other[column])) return;  // says nothing
-      const place = document.createElement(k === 0 || (column === 0 && rows[0].every((head) => !head)) ? "th" : "td");
-      place.textContent = cell;
-      line.append(place);
-    });
-  });
-  box.append(table);
-  return box;
 }
 
 function fillTables(section: Section) {
