@@ -14,6 +14,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/regular_file.hpp"
 #include "rvelab/sheet/beside.hpp"
+#include "rvelab/sheet/fitted_models.hpp"
 #include "rvelab/sheet/numbers.hpp"
 #include "rvelab/sheet/write_sheet.hpp"
 
@@ -114,11 +115,12 @@ void print(const SheetArguments& arguments, const sheet::Sheet& sheet) {
                     std::to_string(number.tests.size())});
   }
   if (rows.size() > 1) std::cout << aligned(rows) << "\n";
-  std::cout << "files   " << arguments.folder << "/index.html, summary.json, summary.csv, tests/" << std::endl;
+  std::cout << "files   " << arguments.folder << "/index.html, summary.json, summary.csv, models/, tests/" << std::endl;
 }
 
 void run_sheet(const SheetArguments& arguments) {
   if (sheet::Sheet empty; !arguments.beside.empty()) sheet::add_measured(empty, arguments.beside);  // its mistakes
+  for (const std::string& model : arguments.models) models::of_one_density(model);                  // its spelling
   SheetSetup setup = setup_of(arguments);
   std::vector<SheetTest> tests = sheet_tests(setup);
   prepare_folder(arguments, setup);
@@ -139,8 +141,12 @@ void run_sheet(const SheetArguments& arguments) {
   sheet::Sheet sheet = sheet::numbers_of(*made, setup.specimens.soil);
   for (const auto* each : {&setup.remarks, &failures})
     for (const std::string& remark : *each) sheet.remarks.push_back(remark + ".");
+  Workers workers(threads);
+  const sheet::FittedModels models = sheet::fitted_models(arguments.models, *made, sheet, workers);
+  sheet.remarks.insert(sheet.remarks.end(), models.remarks.begin(), models.remarks.end());
   if (!arguments.beside.empty()) sheet::add_measured(sheet, arguments.beside);
-  sheet::write_sheet(sheet, {}, arguments.folder);
+  sheet::write_models(models, arguments.folder);
+  sheet::write_sheet(sheet, models.fits, arguments.folder);
   print(arguments, sheet);
   if (made->size() < planned)
     throw Error(std::to_string(planned - made->size()) + " of " + std::to_string(planned) +
@@ -166,6 +172,11 @@ void add_sheet(CLI::App& app) {
   command.add_flag("--quick", arguments->quick, "as --plan quick: few grains, within minutes")->excludes("--plan");
   command.add_option("--beside", arguments->beside,
                      "MEASURED.toml: numbers and curves of a laboratory to draw beside those of the sheet");
+  command
+      .add_option(
+          "--models", arguments->models,
+          "continuum models to fit: mohr_coulomb, hardening_soil_small, norsand,\nhypoplasticity (default: all)")
+      ->delimiter(',');
   add_set(command, arguments->settings, "pack.number=2000 of the recipe, sheet.seeds=5 of the plan");
   add_threads(command, arguments->threads, "specimens or tests at a time; default: one per core");
   command.add_flag("--force", arguments->force, "start again in a folder that holds a sheet; its tests are removed");

@@ -7,13 +7,14 @@
 
 #include "rvelab/cli/sheet_specimens.hpp"
 #include "rvelab/sheet/plan.hpp"
+#include "tools/models/models.hpp"
 
 namespace rvelab::cli {
 
 struct SheetArguments {
   std::vector<std::string> what;  ///< a recipe, or specimens
   std::string folder, plan = "standard", beside;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, models = models::names();
   unsigned threads = 0;
   bool quick = false, force = false, resume = false, share = false, json = false;
 

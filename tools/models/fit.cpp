@@ -222,6 +222,8 @@ const std::vector<std::string>& names() {
   return list;
 }
 
+bool of_one_density(std::string_view model) { return !description_of(std::string(model)).softens; }
+
 Fit fit(std::string_view model, const std::vector<ElementTest>& tests, const std::map<std::string, double>& numbers) {
   const Description& description = description_of(std::string(model));
   Fit result;

@@ -53,6 +53,8 @@ struct Fit {
 
 /// Names of models: "mohr_coulomb", "hardening_soil_small", "norsand", "hypoplasticity".
 const std::vector<std::string>& names();
+/// Whether a model knows no void ratio, so that it stands for one density alone. InputError: no such model.
+bool of_one_density(std::string_view model);
 
 /// `numbers`: of the data sheet by their keys, where it has them ("phi_cs_deg", "critical_line_e_G", ...): first
 /// guesses, and what a model takes from them as it is (README.md lists them). Mohr-Coulomb and Hardening Soil know no

@@ -1,0 +1,82 @@
+#include "rvelab/sheet/fitted_models.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
+#include "rvelab/sheet/element_tests.hpp"
+
+namespace rvelab::sheet {
+namespace {
+
+struct Job {
+  std::string model, density_name = "";  ///< "": of all densities
+  std::optional<std::size_t> density = {};
+  models::Fit fit = {};
+  std::vector<ModelFile> files = {};
+  std::string why_not = "";
+
+  std::string file(const std::string& ending) const { return model + (density ? "_" + density_name : "") + ending; }
+};
+
+std::vector<Job> jobs_of(const std::vector<std::string>& names, const std::vector<Test>& tests) {
+  std::map<std::size_t, std::string> densities;
+  for (const Test& test : tests) densities[test.density] = test.density_name;
+  std::vector<Job> jobs;
+  for (const std::string& model : names) {
+    if (!models::of_one_density(model)) {
+      jobs.push_back({.model = model});
+      continue;
+    }
+    for (const auto& [density, name] : densities)
+      jobs.push_back({.model = model, .density_name = name, .density = density});
+  }
+  return jobs;
+}
+
+void carry_out(Job& job, const std::vector<Test>& tests, const Sheet& sheet) {
+  try {
+    job.fit = models::fit(job.model, element_tests(tests, job.density), numbers_by_key(sheet, job.density_name));
+  } catch (const InputError& refused) {
+    job.why_not = refused.what();
+    return;
+  }
+  for (const auto& [host, ending] :
+       std::map<std::string, std::string>{{"table", ".txt"}, {"abaqus", "_abaqus.inp"}, {"calculix", "_calculix.inp"}})
+    if (std::string text = models::card(job.fit, host); !text.empty()) job.files.push_back({job.file(ending), text});
+  if (job.density) job.fit.model += ", " + job.density_name;
+}
+
+}  // namespace
+
+FittedModels fitted_models(const std::vector<std::string>& names, const std::vector<Test>& tests, const Sheet& sheet,
+                           Workers& workers) {
+  FittedModels found;
+  if (!tests.empty() && tests.front().dimension == 2) {
+    found.remarks.push_back("Continuum models are left out: they are of axisymmetric tests, of grains in space.");
+    return found;
+  }
+  std::vector<Job> jobs = jobs_of(names, tests);
+  workers.for_each_in_turn(jobs.size(), [&](std::size_t k) { carry_out(jobs[k], tests, sheet); });
+  for (Job& job : jobs) {
+    if (!job.why_not.empty()) {
+      found.remarks.push_back(job.file("") + " is left out: " + job.why_not + ".");
+      continue;
+    }
+    found.fits.push_back(std::move(job.fit));
+    for (ModelFile& file : job.files) found.files.push_back(std::move(file));
+  }
+  return found;
+}
+
+void write_models(const FittedModels& found, const std::string& folder) {
+  const std::filesystem::path models = std::filesystem::path(folder) / "models";
+  std::error_code failed;
+  std::filesystem::create_directories(models, failed);
+  if (failed) throw InputError(models.string() + ": cannot be made (" + failed.message() + ")");
+  for (const ModelFile& file : found.files) io::publish_text((models / file.name).string(), file.text);
+}
+
+}  // namespace rvelab::sheet
