@@ -55,6 +55,9 @@ Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_
   if (is_agitated(recipe)) text << ", with " << reached_in_words(compressed_of(recipe, draws));
   text << (end == End::out_of_reach ? ", too far from it for more packings to help; " : "; ");
   if (*recipe.void_ratio > highest->void_ratio) {
+    if (recipe.preparation.expansion && recipe.preparation.least_expansion.value_or(1) > 0)
+      text << "grains that were agitated by preparation.expansion = " << *recipe.preparation.expansion
+           << " become denser: give a smaller one, or preparation.least_expansion; or ";
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
   } else if (*recipe.void_ratio < lowest->void_ratio) {

@@ -52,6 +52,10 @@ void check_agitation(const Recipe& recipe) {
     throw InputError(
         "preparation.least_expansion is what a larger preparation.expansion is reduced to for a density; allowed: with "
         "preparation.expansion, not above it, and target.void_ratio or relative_density; add or change one");
+  if (p.least_expansion == 0.0 && (contacts.fabric_anisotropy || p.strain_difference))
+    throw InputError(
+        "preparation.least_expansion = 0 ends without agitation, which target.fabric_anisotropy and "
+        "preparation.strain_difference need; allowed: above 0; give a small one, 1e-4");
   if (contacts.fabric_anisotropy && p.strain_difference)
     throw InputError(
         "preparation.strain_difference contradicts target.fabric_anisotropy, for which it is searched; allowed: one of "

@@ -81,14 +81,14 @@ class Search {
       }
       if (const auto found = make(first, count)) return packing(*found);
       if (made().empty() && overlap_) std::rethrow_exception(overlap_);
-      if (made().empty() && unrest_ == draws_.size())
-        throw IncrementFailed("packing: " + failures_.front() + remedy_of_unrest);
+      if (made().empty() && unrest_ == draws_.size() - begin_)
+        throw IncrementFailed("packing: " + failures_[begin_] + remedy_of_unrest);
       if (contacts_out_of_reach())
         throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::contacts_out_of_reach);
       if (!reduced_expansion() && out_of_reach())
         throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::out_of_reach);
     }
-    if (made().empty()) throw IncrementFailed(failures_.front());
+    if (made().empty()) throw IncrementFailed(failures_[begin_]);
     throw not_found(recipe_, made(), draws_.size() - begin_ - made().size(), End::draws_spent);
   }
 
@@ -131,11 +131,13 @@ class Search {
     Preparation& p = recipe_.preparation;
     constexpr double unlikely = 0.5;
     if (!p.expansion || !p.least_expansion || *p.expansion <= *p.least_expansion || !out_of_reach(unlikely) ||
-        made().front().void_ratio >= *recipe_.void_ratio)
+        made().front().void_ratio >= *recipe_.void_ratio || long(draws_.size()) >= p.max_draws)
       return false;
     p.expansion = std::max(*p.least_expansion, *p.expansion / 3);
-    if (*p.expansion < smallest_expansion) p.expansion.reset();
+    if (*p.least_expansion == 0 && *p.expansion < smallest_expansion) p.expansion.reset();
     begin_ = draws_.size();
+    unrest_ = 0;
+    overlap_ = nullptr;
     return true;
   }
 
@@ -200,7 +202,7 @@ class Search {
                     first_agitation(made.friction, first));
       } catch (const OverlapBeyondLimit& failure) {
         failures_[number] = failure.what();
-        if (number == 0) overlap_ = std::current_exception();
+        if (number == begin_) overlap_ = std::current_exception();
         return;
       } catch (const NotAtRest& failure) {
         failures_[number] = failure.what();

@@ -165,8 +165,12 @@ TEST_CASE("the expansion is reduced for a density that agitated grains are beyon
   recipe.void_ratio_tolerance = 0.01;
   recipe.preparation.expansion = 0.03;
   recipe.preparation.max_draws = 60;
-  CHECK_THROWS_WITH(packed_by(recipe), Contains("target.void_ratio") && Contains("reached"));
+  CHECK_THROWS_WITH(packed_by(recipe),
+                    Contains("target.void_ratio") && Contains("reached") && Contains("preparation.least_expansion"));
   recipe.preparation.least_expansion = 3e-4;
+  recipe.preparation.max_draws = 8;  // it would be reduced after them: what they reached is reported
+  CHECK_THROWS_WITH(packed_by(recipe), Contains("target.void_ratio") && Contains("reached"));
+  recipe.preparation.max_draws = 60;
   const pack::Packing packing = packed_by(recipe);
   CHECK(std::abs(packing.void_ratio - *recipe.void_ratio) <= recipe.void_ratio_tolerance);
   CHECK(packing.agitation->expansion < 0.03);
@@ -193,6 +197,12 @@ TEST_CASE("what contradicts agitation, or cannot be agitated, is refused by name
           "preparation.expansion");
   refused([](pack::Recipe& r) { r.void_ratio = 0.6, r.preparation.least_expansion = 0.01; },
           "preparation.least_expansion");
+  refused(
+      [](pack::Recipe& r) {
+        r.void_ratio = 0.6, r.preparation.expansion = 0.01, r.preparation.least_expansion = 0;
+        r.contacts.fabric_anisotropy = 0.2;
+      },
+      "preparation.least_expansion = 0");
   refused([](pack::Recipe& r) { r = discs(), r.contacts.coordination_number = 3, r.contacts.axis = 2; },
           "target.fabric_direction");
 }

@@ -23,6 +23,7 @@ FIT = pathlib.Path(words[0]) if words else PROTOCOLS / "fits/karlsruhe_agitated.
 COUNT = int(words[1]) if len(words) > 1 else 5
 GRAINS = int(words[2]) if len(words) > 2 else 1000
 RECIPE = [f"pack.number={GRAINS}", *words[3:]]
+LOOSEST = {"OE1": ["preparation.max_draws=400"]}  # a relative density of 0.04
 UNDRAINED = {"TMU2": (200e3, [0.1, 0.25, 0.4, 0.55]), "TMU6": (200e3, [0.5, 0.65, 0.8, 0.95])}  # Pa, relative densities tried
 
 
@@ -38,7 +39,8 @@ def tests(protocol, name, pressure, density, settings):
     recipe = sets(f"target.relative_density={density:.4f}", f"target.pressure_Pa={pressure}", *RECIPE)
 
     def one(seed):
-        specimen = once(work / f"{name}_{seed}.h5", "pack", PROTOCOLS / "soils/karlsruhe.toml", *recipe, *sets(f"pack.seed={seed}"))
+        specimen = once(work / f"{name}_{seed}.h5", "pack", PROTOCOLS / "soils/karlsruhe.toml", *recipe,
+                        *sets(*LOOSEST.get(name, []), f"pack.seed={seed}"))
         return once(work / f"{name}_{seed}_R.h5", "run", protocol, "--specimen", specimen,
                     *sets(f"test.pressure_Pa={pressure}", *settings), "--threads", 1, codes=None)
     return list(in_turn(one, range(1, COUNT + 1)))
