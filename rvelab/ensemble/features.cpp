@@ -95,25 +95,10 @@ double at_stress(const Column& stress, const Column& strain, double at) {
   return found ? found->in(strain) : nan;
 }
 
-double largest_q(const TestPath& path) {
-  return path.largest_q != 0 ? path.largest_q : *std::max_element(path.q.begin(), path.q.end());
-}
-
-double secant_at_half(const TestPath& path) {
-  const double start = path.q.front();
-  const double half = 0.5 * (largest_q(path) - start);
-  const auto found = crossing(path.q, start + half);
-  return found && half > 0 ? half / (found->in(path.strain) - path.strain.front()) : nan;
-}
-
-double near_largest(const TestPath& path) {
-  const auto found = crossing(path.q, 0.95 * largest_q(path));
-  return found ? found->in(path.strain) : nan;
-}
-
-/// The largest mean of y over strains within a quarter of each strain, 1 % at most. That of single records of 300
+/// The largest mean of q over strains within a quarter of each strain, 1 % at most. That of single records of 300
 /// spheres is 10 % above the largest q of the mean of many specimens.
-double largest_mean(const Column& y, const Column& strain) {
+double largest_q(const TestPath& path) {
+  const Column &y = path.q, &strain = path.strain;
   constexpr double part = 0.25, most = 0.01;
   Column area(y.size(), 0.0);  // below y
   for (std::size_t k = 1; k < y.size(); ++k)
@@ -130,6 +115,18 @@ double largest_mean(const Column& y, const Column& strain) {
     largest = std::max(largest, (up_to(high) - up_to(low)) / (high - low));
   }
   return largest;
+}
+
+double secant_at_half(const TestPath& path) {
+  const double start = path.q.front();
+  const double half = 0.5 * (largest_q(path) - start);
+  const auto found = crossing(path.q, start + half);
+  return found && half > 0 ? half / (found->in(path.strain) - path.strain.front()) : nan;
+}
+
+double near_largest(const TestPath& path) {
+  const auto found = crossing(path.q, 0.95 * largest_q(path));
+  return found ? found->in(path.strain) : nan;
 }
 
 /// The stages at the end of a test that only shorten or lengthen its axis.
@@ -247,7 +244,6 @@ TestPath path_of(const records::TestResult& test, int dimension, bool over_stres
   }
   constexpr double without_stress = 0.01;  // of p at the start; protocols end below 0.001
   path.flows = path.strain.size() == stage.size() && path.p.back() < without_stress * path.p.front();
-  path.largest_q = largest_mean(path.q, path.strain);
   return path;
 }
 

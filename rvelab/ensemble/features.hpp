@@ -7,8 +7,8 @@
 //     E50_Pa                                    secant from the start to half of the largest increase of q
 //     strain_at_95_percent_of_q                 where q first reaches 95 % of its largest value
 //     largest_q_Pa, last_q_Pa                   q, up to the end of the curve
-//   of a test here the largest value is that of the mean over 2 % of strain (within a quarter of the strain): some
-//   hundred grains fluctuate where the specimen of a laboratory does not
+//   the largest value is that of the mean over 2 % of strain (within a quarter of the strain), since some hundred
+//   grains fluctuate
 //   drained
 //     eps_v_at_X_percent                        volumetric strain 1 - V/V0 since the start
 //   undrained
@@ -61,8 +61,7 @@ struct TestPath {
   std::vector<double> strain, q, p, eps_v;  ///< strain rises
   /// Oedometer, rows in their order; unloading begins where loading ends.
   std::vector<double> loading, loading_strain, unloading, unloading_strain;
-  double largest_q = 0;  ///< the largest of the means; 0: of q itself, of measured curves
-  bool flows = false;    ///< it ended early without effective stress: it stays as at its end
+  bool flows = false;  ///< it ended early without effective stress: it stays as at its end
 };
 
 /// Of the last stage of a test up to an axial strain; of an oedometer test (`over_stress`) all stages at its end whose

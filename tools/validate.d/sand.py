@@ -8,8 +8,9 @@ KEY=VALUE: of the recipe, to judge other parameters.
 
 Of drained tests: largest q within 5 %, the strain at 95 % of it within 25 %, E50 within 20 %, q at 0.5, 1, 2, 5 % within 12 % of the largest,
 eps_v at 5 and 15 % within 0.7 % of strain; each of the mean curve. Of oedometer tests: root of the mean square of the strain off over
-the stress, within 15 % of the largest strain. Undrained tests, whose densities are not published with the data: at the density at which the
-mean curve has the least p that was measured, q there and at the end of the measured curve within 20 %, and the sign of the change of p."""
+the stress, within 15 % of the largest strain. Undrained tests, whose densities are not published with the data, by three specimens of 500: at the
+density whose mean curve has the least p that was measured, q there and at the end of the measured curve within 20 %, and the sign of the
+change of p."""
 
 import pathlib
 import tomllib
@@ -24,7 +25,8 @@ COUNT = int(words[1]) if len(words) > 1 else 5
 GRAINS = int(words[2]) if len(words) > 2 else 1000
 RECIPE = [f"pack.number={GRAINS}", *words[3:]]
 LOOSEST = {"OE1": ["preparation.max_draws=400"]}  # a relative density of 0.04
-UNDRAINED = {"TMU2": (200e3, [0.1, 0.25, 0.4, 0.55]), "TMU6": (200e3, [0.5, 0.65, 0.8, 0.95])}  # Pa, relative densities tried
+UNDRAINED = {"TMU2": (200e3, [0.2, 0.4, 0.6]), "TMU6": (200e3, [0.6, 0.75, 0.9])}  # Pa, relative densities tried
+OF_UNDRAINED = ["pack.number=500"]  # and three specimens
 
 
 def measured(name):
@@ -34,16 +36,16 @@ def measured(name):
     return dict(zip(rows[0].split(","), values))
 
 
-def tests(protocol, name, pressure, density, settings):
-    """Record files of COUNT specimens."""
-    recipe = sets(f"target.relative_density={density:.4f}", f"target.pressure_Pa={pressure}", *RECIPE)
+def tests(protocol, name, pressure, density, settings, count=COUNT, more=()):
+    """Record files of specimens."""
+    recipe = sets(f"target.relative_density={density:.4f}", f"target.pressure_Pa={pressure}", *RECIPE, *more)
 
     def one(seed):
         specimen = once(work / f"{name}_{seed}.h5", "pack", PROTOCOLS / "soils/karlsruhe.toml", *recipe,
                         *sets(*LOOSEST.get(name, []), f"pack.seed={seed}"))
         return once(work / f"{name}_{seed}_R.h5", "run", protocol, "--specimen", specimen,
                     *sets(f"test.pressure_Pa={pressure}", *settings), "--threads", 1, codes=None)
-    return list(in_turn(one, range(1, COUNT + 1)))
+    return list(in_turn(one, range(1, count + 1)))
 
 
 def sheared(path):
@@ -135,7 +137,8 @@ def undrained(name):
     pressure, densities = UNDRAINED[name]
     found = {}
     for density in densities:
-        paths = tests("triaxial_undrained", f"{name}_{density}", pressure, density, [f"stage.compression.to_strain={strain[-1] + 1e-3:.4f}"])
+        paths = tests("triaxial_undrained", f"{name}_{density}", pressure, density, [f"stage.compression.to_strain={strain[-1] + 1e-3:.4f}"],
+                      3, OF_UNDRAINED)
         at, *mean = mean_of([sheared(path) for path in paths], np.arange(0, strain[-1], 5e-4))
         found[density] = at, mean[0].mean(axis=0), mean[1].mean(axis=0), mean[0][:, -1]
         print(f"{name:<6} at a relative density of {density}: least p {found[density][2].min():.0f} kPa (measured {p.min():.0f}), "
