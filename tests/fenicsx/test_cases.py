@@ -79,6 +79,13 @@ class Cases(unittest.TestCase):
         load, alone = map(float, re.search(r"at the end ([\d.]+); .* at that strain ([\d.]+)", said).groups())
         self.assertAlmostEqual(load / alone, 1, delta=0.05)
 
+    def test_the_whole_wall_of_the_cylinder_is_pressed(self):
+        from mpi4py import MPI
+        from rvelab.fenicsx import compat, triaxial
+        for n in (1, 2, 3, 7):
+            body = triaxial.quarter(MPI.COMM_SELF, n)
+            self.assertEqual(len(compat.locate(body, 2, triaxial.wall(n))), 2 * n * 2 * n)
+
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
         self.assertIn("there is no file none.h5", case("biaxial", "--specimens", "none.h5", code=2))
