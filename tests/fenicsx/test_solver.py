@@ -224,6 +224,9 @@ class Files(unittest.TestCase):
             fenicsx.load(other, FOLDER / "kept")
         with self.assertRaisesRegex(ValueError, "no checkpoint was made there"):
             fenicsx.load(other, FOLDER / "none")
+        small = compressed(fenicsx.Material(block(), specimen(), strains="small"))
+        with self.assertRaisesRegex(ValueError, "made with strains finite, and this material has strains small: set strains"):
+            fenicsx.load(small, FOLDER / "kept")
         fenicsx.rve(FOLDER / "kept", 5, FOLDER / "five.h5")
         point = second.material.points
         rve = rvelab.Rve(FOLDER / "five.h5")
