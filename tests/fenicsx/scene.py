@@ -1,5 +1,7 @@
 """A small problem of tests/fenicsx/test_ranks.py, for mpirun: a block pressed by a rough plate on part of its top.
-scene.py FOLDER OUTPUT END [--resume CHECKPOINT] [--save CHECKPOINT] [--still] [--die]"""
+scene.py FOLDER OUTPUT END [--resume CHECKPOINT] [--save CHECKPOINT] [--still] [--die] [--own] [--tags]
+--own: each point has its RVE from the beginning; at the end the checkpoint is loaded again, and gives the last row again
+--tags: one cell has a tag without a specimen; OUTPUT gets the number of ranks that are told"""
 import json
 import os
 import signal
@@ -8,6 +10,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import rvelab
 import stand_in
 from dolfinx import mesh
 from mpi4py import MPI
@@ -19,7 +22,21 @@ option = lambda name: sys.argv[sys.argv.index(name) + 1] if name in sys.argv els
 comm = MPI.COMM_WORLD
 block = mesh.create_rectangle(comm, [(0, 0), (2, 1)], (4, 2), mesh.CellType.quadrilateral)
 specimens = [stand_in.specimen(), stand_in.specimen("loose", 50, "pack_loose")]
-material = fenicsx.Material(block, specimens, balance="--still" not in sys.argv, tolerance=1e-4)
+if "--tags" in sys.argv:
+    cells = np.arange(block.topology.index_map(2).size_local, dtype=np.int32)
+    x = mesh.compute_midpoints(block, 2, cells)
+    tags = mesh.meshtags(block, 2, cells, ((x[:, 0] > 1.5) & (x[:, 1] > 0.5)).astype(np.int32))
+    told = 0
+    try:
+        fenicsx.Material(block, {0: specimens[0]}, cell_tags=tags)
+    except (ValueError, rvelab.RvelabError) as error:
+        told = int("cells have the tag 1" in str(error))
+    told = comm.allreduce(told)
+    if comm.rank == 0:
+        output.write_text(json.dumps(told))
+    sys.exit(0)
+material = fenicsx.Material(block, specimens, balance="--still" not in sys.argv, tolerance=1e-4,
+                            share=0 if "--own" in sys.argv else True)
 solver = fenicsx.Solver(material)
 plate = lambda x: np.isclose(x[1], 1) & (x[0] < 0.51)  # noqa: E731
 for k, value in enumerate((0.0, lambda t: -t)):
@@ -36,6 +53,9 @@ for step in solver.march(end, 1e-4):
         fenicsx.save(solver, option("--save"))
     if "--die" in sys.argv and step.t > 2.5e-4:
         os.kill(os.getpid(), signal.SIGKILL)
+if "--own" in sys.argv and option("--save"):
+    fenicsx.load(solver, option("--save"))
+    curve.append([solver.t, *solver.reaction(plate)])
 points, lines = material.points, fenicsx.summary(solver)
 kinds = comm.gather((points.made.sum(), len(points.made), points.moved, points.spread))
 if comm.rank == 0:

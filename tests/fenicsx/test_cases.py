@@ -47,6 +47,15 @@ class Cases(unittest.TestCase):
         self.assertIn("three.h5: the RVE of point 3", said)
         self.assertEqual(len(rvelab.Rve(FOLDER / "three.h5").radii), 50)
 
+    def test_small_strains_give_the_volume_of_finite_ones_at_the_beginning(self):
+        options = ("--specimens", stand_in.specimen(), "--elements", "1", "--frames", "0", "--keep", "0", "--to", "0.001")
+        volumes = []
+        for strains in ("finite", "small"):
+            case("biaxial", *options, "--strains", strains, "-o", strains)
+            volumes.append(curve(strains)["volume_strain"])
+        self.assertGreater(np.abs(volumes[0]).max(), 1e-5)
+        np.testing.assert_allclose(volumes[1], volumes[0], atol=0.05 * np.abs(volumes[0]).max())
+
     def test_footing_is_stiffer_rough_and_below_its_capacity(self):
         options = ("--grains", "50", "--draws", "1", "--elements", "1", "--to", "0.004", "--frames", "0", "--keep", "0")
         said = case("footing", *options, "--unit-weight", "10e3", "--at-rest", "0.6")
@@ -78,6 +87,13 @@ class Cases(unittest.TestCase):
                     "--smooth")
         load, alone = map(float, re.search(r"at the end ([\d.]+); .* at that strain ([\d.]+)", said).groups())
         self.assertAlmostEqual(load / alone, 1, delta=0.05)
+
+    def test_the_whole_wall_of_the_cylinder_is_pressed(self):
+        from mpi4py import MPI
+        from rvelab.fenicsx import compat, triaxial
+        for n in (1, 2, 3, 7):
+            body = triaxial.quarter(MPI.COMM_SELF, n)
+            self.assertEqual(len(compat.locate(body, 2, triaxial.wall(n))), 2 * n * 2 * n)
 
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))

@@ -11,7 +11,7 @@ import rvelab
 from dolfinx import mesh
 from mpi4py import MPI
 from rvelab import fenicsx
-from rvelab.fenicsx import compat, tensors
+from rvelab.fenicsx import compat, family, tensors
 from rvelab.fenicsx.forms import Forms
 from rvelab.fenicsx.secants import Secants
 
@@ -84,6 +84,20 @@ class Stress(unittest.TestCase):
         np.testing.assert_allclose(material.sigma[:, 0, 1], 0, atol=100)
         with self.assertRaisesRegex(ValueError, "compression .negative. at every point"):
             fenicsx.Material(block((1, 1)), specimen(), initial=lambda x: np.zeros((len(x), 2, 2)))
+
+
+    def test_binned_points_are_brought_to_their_stress_but_for_those_near_that_of_the_specimen(self):
+        pressure = float(np.exp(576 * family.STEP_OF_LOGARITHM))  # in the middle of a bin: its member is the specimen
+        file = specimen("bin", **{"target.pressure_Pa": pressure})
+        p = np.linspace(0.994, 1.006, 121) * pressure
+        sigma = -p[:, None, None] * np.eye(2)
+        group, _, goals = family.members(MPI.COMM_SELF, [file] * len(p), sigma, 2, dict(workers=1, tolerance_abs=1e-3))
+        self.assertEqual(set(group.tolist()), {0})
+        own = rvelab.Rve(file).stress[:2, :2]
+        near = np.abs(own - sigma).max(axis=(1, 2)) < family.NEAR * rvelab.Rve(file).p
+        self.assertTrue(0 < near.sum() < 30)
+        np.testing.assert_array_equal(np.isnan(goals[:, 0, 0]), near)
+        np.testing.assert_array_equal(goals[~near], sigma[~near])
 
 
 class Sharing(unittest.TestCase):

@@ -67,6 +67,20 @@ class Ranks(unittest.TestCase):
             self.assert_same(resumed["curve"], self.alone["curve"][-len(resumed["curve"]):])
 
 
+    def test_rves_that_moved_return_to_their_points(self):
+        kept = FOLDER / "own"
+        shutil.rmtree(kept, ignore_errors=True)
+        whole = run(2, 5e-4, "--own")
+        first = run(2, 2e-4, "--own", "--save", kept)
+        self.assertGreater(first["moved"], 0)
+        self.assertEqual(first["curve"][-1], first["curve"][-2])
+        count = len(first["curve"]) - 1
+        self.assert_same(run(2, 5e-4, "--own", "--resume", kept)["curve"], whole["curve"][count:])
+
+    def test_what_one_rank_finds_wrong_all_ranks_are_told(self):
+        self.assertEqual(run(2, 0, "--tags"), 2)
+
+
 class Plan(unittest.TestCase):
     def test_moves_narrow_the_gap(self):
         home, work = np.array([0, 0, 0, 0]), np.array([5.0, 3.0, 2.0, 1.0])

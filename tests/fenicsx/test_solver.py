@@ -117,6 +117,32 @@ class Increments(unittest.TestCase):
         self.assertGreater(steps[0].refused, 0)
         self.assertLess(steps[0].dt, 0.8)
 
+    def test_a_displacement_that_is_not_zero_at_the_beginning_is_applied(self):
+        material = with_law(fenicsx.Material(block((1, 2)), specimen()))
+        solver = fenicsx.Solver(material)
+        solver.fix(edges("bottom"), 1, 2e-3)
+        solver.fix(edges("top"), 1, lambda t: 3e-3 - t)
+        solver.fix(lambda x: np.isclose(x[0], 0) & np.isclose(x[1], 0), 0, at="points")
+        solver.pressure(edges("left", "right"), P)
+        solver.tolerance = 1e-10
+        x, steps = material.space.tabulate_dof_coordinates(), list(solver.march(1e-2, 5e-3))
+        self.assertEqual(len(steps), 2)
+        vertical = 2e-3 + (3e-3 - 1e-2 - 2e-3) * x[:, 1] / 1.5
+        np.testing.assert_allclose(material.u.x.array.reshape(-1, 2)[:, 1], vertical, atol=1e-12)
+
+    def test_a_clipped_increment_that_is_refused_is_cut(self):
+        solver, tried = compressed(with_law(fenicsx.Material(block((1, 1)), specimen()))), []
+        increment = solver._increment
+
+        def refuses(dt):
+            tried.append(dt)
+            return (None, 0.5) if dt > 2e-3 else increment(dt)
+        solver._increment = refuses
+        list(solver.march(4e-3, 1.0, least=1e-4))
+        np.testing.assert_allclose(tried[:2], (4e-3, 2e-3))
+        solver._increment, solver.dt = increment, 1.0  # as after a checkpoint
+        self.assertLessEqual(max(step.dt for step in solver.march(6e-3, 1e-3)), 1e-3 * (1 + 1e-9))
+
     def test_failure_under_loads_is_an_error_and_leaves_the_state_before(self):
         material = fenicsx.Material(block((1, 1)), specimen())
         solver = fenicsx.Solver(material)
@@ -198,6 +224,9 @@ class Files(unittest.TestCase):
             fenicsx.load(other, FOLDER / "kept")
         with self.assertRaisesRegex(ValueError, "no checkpoint was made there"):
             fenicsx.load(other, FOLDER / "none")
+        small = compressed(fenicsx.Material(block(), specimen(), strains="small"))
+        with self.assertRaisesRegex(ValueError, "made with strains finite, and this material has strains small: set strains"):
+            fenicsx.load(small, FOLDER / "kept")
         fenicsx.rve(FOLDER / "kept", 5, FOLDER / "five.h5")
         point = second.material.points
         rve = rvelab.Rve(FOLDER / "five.h5")

@@ -2,6 +2,7 @@
 import importlib
 import logging
 import sys
+import traceback
 import warnings
 
 from mpi4py import MPI
@@ -32,8 +33,11 @@ def main(words: list[str]) -> int:
             raise ValueError(f"there is no case {words[0]!r}; allowed: {', '.join(CASES)}, rve")
         importlib.import_module("." + words[0], __package__).main(words[1:], comm)
         return 0
-    except (ValueError, RuntimeError, OSError) as error:  # RvelabError is a RuntimeError
-        print(f"rvelab.fenicsx: {error}", file=sys.stderr, flush=True)
+    except Exception as error:
+        if isinstance(error, (ValueError, RuntimeError, OSError, ImportError)):  # RvelabError is a RuntimeError
+            print(f"rvelab.fenicsx: {error}", file=sys.stderr, flush=True)
+        else:
+            traceback.print_exc()
         if comm.size > 1:
             comm.Abort(2)  # other ranks may wait for this one
         return 2

@@ -136,6 +136,8 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
         with open(curve, newline="") as file:
             rows = [list(map(float, each)) for each in list(csv.reader(file))[1:]]
         rows = [each for each in rows if each[0] <= solver.t * (1 + 1e-9)]
+    if first:
+        o.output.mkdir(parents=True, exist_ok=True)
     folder = o.output / (f"fields_from_{solver.t:.4g}" if o.resume else "fields")
     fields = Output(solver.material, folder) if o.frames else None
     _print(first, f"{len(rows)} rows of the run before" if o.resume else "", "  ".join(f"{name:>12}" for name in names),

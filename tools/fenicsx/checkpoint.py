@@ -14,6 +14,7 @@ import numpy as np
 import rvelab
 
 from . import compat
+from .ranks import together
 from .solver import Solver
 
 FORMAT = 1
@@ -24,13 +25,8 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
     """Collective. The committed state; a checkpoint in the folder is replaced."""
     material, comm, folder = solver.material, solver.material.mesh.comm, Path(folder)
     points, d = material.points, material.d
-    generation = 0
-    if comm.rank == 0:
-        folder.mkdir(parents=True, exist_ok=True)
-        held = sorted(int(file.name.split("_")[1]) for file in folder.glob("pool_*_*.h5"))
-        generation = held[-1] + 1 if held else 0
-    generation = comm.bcast(generation)
-    _together(comm, lambda: points.pool.write(folder / f"pool_{generation}_{comm.rank}.h5"))
+    generation = comm.bcast(together(comm, lambda: _generation(folder) if comm.rank == 0 else 0))
+    together(comm, lambda: points.pool.write(folder / f"pool_{generation}_{comm.rank}.h5"))
     cells = np.asarray(material.mesh.topology.original_cell_index)[:len(material.cells)]
     dofs = compat.cell_dofs(material.space, len(cells))
     last = np.zeros_like(material.u.x.array) if solver._last is None else solver._last
@@ -39,13 +35,26 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
                 last=last.reshape(-1, d)[dofs], sigma=material.sigma, error=material.error, F=material.F, stress=stress,
                 tangent=tangent, beside=material.beside, shared_F=points.F, home=points.home, id=points.ids)
     parts = comm.gather(mine)
-    if comm.rank != 0:
-        comm.Barrier()
-        return
-    whole = {name: np.concatenate([part[name] for part in parts]) for name in mine}
-    by_number, by_cell = np.argsort(whole["numbers"]), np.argsort(whole["cells"])
     about = dict(format=FORMAT, generation=generation, t=solver.t, dt=solver.dt, last_dt=solver._last_dt,
-                 points=len(by_number), cells=len(by_cell), dimension=d, version=rvelab.__version__)
+                 version=rvelab.__version__, **_kind(material))
+    together(comm, lambda: _write(folder, about, parts) if comm.rank == 0 else None)
+
+
+def _generation(folder: Path) -> int:
+    folder.mkdir(parents=True, exist_ok=True)
+    return max((int(file.name.split("_")[1]) for file in folder.glob("pool_*_*.h5")), default=-1) + 1
+
+
+def _kind(material: Any) -> dict[str, Any]:
+    """Collective. What a checkpoint and the Material of a program must agree in."""
+    comm = material.mesh.comm
+    return dict(points=comm.allreduce(len(material.numbers)), cells=comm.allreduce(len(material.cells)),
+                dimension=material.d, strains="finite" if material.finite else "small", degree=material.degree)
+
+
+def _write(folder: Path, about: dict[str, Any], parts: list[dict[str, np.ndarray]]) -> None:
+    whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    by_number, by_cell = np.argsort(whole["numbers"]), np.argsort(whole["cells"])
     arrays = {name: whole[name][by_number] for name in PER_POINT}
     arrays |= {name: whole[name][by_cell] for name in ("u", "last")}
     with open(folder / "host.part", "wb") as file:
@@ -54,28 +63,19 @@ def save(solver: Solver, folder: str | os.PathLike[str]) -> None:
         os.fsync(file.fileno())
     os.replace(folder / "host.part", folder / "host.npz")
     for file in folder.glob("pool_*_*.h5"):
-        if int(file.name.split("_")[1]) != generation:
+        if int(file.name.split("_")[1]) != about["generation"]:
             file.unlink()
-    comm.Barrier()
 
 
 def load(solver: Solver, folder: str | os.PathLike[str]) -> None:
     """Collective. Mesh, specimens, constraints and loads are those of the program, state and time those of the
     checkpoint."""
     material, comm, folder = solver.material, solver.material.mesh.comm, Path(folder)
-    about, arrays = _host(folder)
-    points, d, total = material.points, material.d, comm.allreduce(len(material.numbers))
-    if (about["points"], about["dimension"]) != (total, d):
-        raise ValueError(f"{folder} holds {about['points']} points in {about['dimension']}D, and the mesh has {total} "
-                         f"in {d}D: a checkpoint is for the mesh and the elements that it was made with")
+    about, arrays = together(comm, lambda: _host(folder))
+    points, d = material.points, material.d
+    _compare(folder, about, _kind(material))
     mine = {name: arrays[name][material.numbers] for name in PER_POINT}
-    snapshots: list[bytes | None] = [None] * len(material.numbers)
-    for rank in sorted(set(mine["home"][mine["home"] >= 0].tolist())):
-        with rvelab.Pool(workers=1) as held:
-            held.read(folder / f"pool_{about['generation']}_{rank}.h5")
-            for k in np.flatnonzero(mine["home"] == rank):
-                snapshots[k] = held.snapshot(int(mine["id"][k]))
-    points.restore(snapshots, mine["shared_F"])
+    points.restore(together(comm, lambda: _snapshots(folder, about, mine)), mine["shared_F"])
     cells = np.asarray(material.mesh.topology.original_cell_index)[:len(material.cells)]
     dofs = compat.cell_dofs(material.space, len(cells))
     for name, function in (("last", material.du), ("u", material.u)):
@@ -89,6 +89,30 @@ def load(solver: Solver, folder: str | os.PathLike[str]) -> None:
     material.keep()
     solver.forms.t = about["t"]
     solver.t, solver.dt, solver._last_dt = about["t"], about["dt"], about["last_dt"]
+
+
+def _compare(folder: Path, about: dict[str, Any], own: dict[str, Any]) -> None:
+    if (about["points"], about["dimension"]) != (own["points"], own["dimension"]):
+        raise ValueError(f"{folder} holds {about['points']} points in {about['dimension']}D, and the mesh has "
+                         f"{own['points']} in {own['dimension']}D: a checkpoint is for the mesh and the elements that it "
+                         "was made with")
+    for key, value in own.items():
+        held = about.get(key, value)  # older checkpoints do not name all
+        if held != value:
+            remedy = "take the mesh that it was made with" if key == "cells" else f"set {key} to {held}"
+            raise ValueError(f"{folder} was made with {key} {held}, and this material has {key} {value}: {remedy}, or "
+                             "begin without the checkpoint")
+
+
+def _snapshots(folder: Path, about: dict[str, Any], mine: dict[str, np.ndarray]) -> list[bytes | None]:
+    """Of the RVEs of this rank's points; None: the point has none."""
+    snapshots: list[bytes | None] = [None] * len(mine["home"])
+    for rank in sorted(set(mine["home"][mine["home"] >= 0].tolist())):
+        with rvelab.Pool(workers=1) as held:
+            held.read(folder / f"pool_{about['generation']}_{rank}.h5")
+            for k in np.flatnonzero(mine["home"] == rank):
+                snapshots[k] = held.snapshot(int(mine["id"][k]))
+    return snapshots
 
 
 def rve(folder: str | os.PathLike[str], number: int, output: str | os.PathLike[str]) -> str:
@@ -116,15 +140,3 @@ def _host(folder: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     if about["format"] != FORMAT:
         raise ValueError(f"{folder / 'host.npz'} is of format {about['format']}; this version reads format {FORMAT}")
     return about, arrays
-
-
-def _together(comm: Any, work: Any) -> None:
-    """Calls it on all ranks; an error of one is raised on all."""
-    failure = None
-    try:
-        work()
-    except (rvelab.RvelabError, OSError) as error:
-        failure = str(error)
-    failures = [text for text in comm.allgather(failure) if text]
-    if failures:
-        raise rvelab.RvelabError(failures[0])

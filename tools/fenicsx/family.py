@@ -9,6 +9,8 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 import rvelab
 
+from .ranks import together
+
 Sources = str | os.PathLike | Sequence | Mapping
 # Each stress has its member, up to so many; of more the members are this far apart in the logarithm of the vertical
 # stress, and in the ratios of the others to it, and points are brought from there to their stress by the tangent.
@@ -40,15 +42,15 @@ def members(comm: Any, sources: list[Any], sigma: np.ndarray | None, d: int,
             options: Mapping[str, Any]) -> tuple[np.ndarray, dict[int, bytes], np.ndarray | None]:
     """Collective. Group of each point, a snapshot of the RVE of each group, and the stress that each point is brought
     to from there by the tangent: NaN where it stays."""
-    goals = [()] * len(sources) if sigma is None else [_exact(each) for each in sigma]
+    goals = together(comm, lambda: [()] * len(sources) if sigma is None else [_exact(each) for each in sigma])
     if len(set().union(*comm.allgather(set(goals)))) > MOST_EXACT:
         goals = [_binned(goal) for goal in goals]
     keys: dict[tuple, int] = {}
     group = np.array([keys.setdefault((str(source), goal), len(keys))
                       for source, goal in zip(sources, goals)], np.int64).reshape(-1)
-    made = {number: _member(*key, d, options) for key, number in keys.items()}
+    made = together(comm, lambda: {number: _member(*key, d, options) for key, number in keys.items()})
     if sigma is not None:
-        stays = np.array([each[1] for each in made.values()])[group] if len(group) else np.zeros(0, bool)
+        stays = np.array([_near(made[number][1], each) for number, each in zip(group, sigma)], bool)
         sigma = np.where(stays[:, None, None], np.nan, sigma)
     return group, {number: each[0] for number, each in made.items()}, sigma
 
@@ -66,21 +68,27 @@ def _binned(goal: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(float(vertical * STEP_OF_RATIO * round(each / goal[-1] / STEP_OF_RATIO)) for each in goal)
 
 
-def _member(source: str, goal: tuple[float, ...], d: int, options: Mapping[str, Any]) -> tuple[bytes, bool]:
-    """Snapshot, and whether the specimen stayed as it is."""
+def _member(source: str, goal: tuple[float, ...], d: int, options: Mapping[str, Any]) -> tuple[bytes, np.ndarray | None]:
+    """Snapshot, and the stress of the specimen (d, d), Pa, if it stayed as it is."""
     with rvelab.Pool(**{**options, "workers": 1}) as pool:
         rve = rvelab.Rve(source, pool)
         if rve.dimension != d:
             raise ValueError(f"{source} is a specimen in {rve.dimension}D, and the mesh is in {d}D")
         if not goal:
-            return rve.snapshot(), True
+            return rve.snapshot(), rve.stress[:d, :d]
         sigma = np.zeros((d, d))
         rows, columns = np.triu_indices(d)
         sigma[rows, columns] = sigma[columns, rows] = goal
-        stays = np.abs(rve.stress[:d, :d] - sigma).max() < NEAR * rve.p
-        if not stays:
-            bring(rve, sigma)
-        return rve.snapshot(), bool(stays)
+        own = np.array(rve.stress[:d, :d])
+        if _near(own, sigma):
+            return rve.snapshot(), own
+        bring(rve, sigma)
+        return rve.snapshot(), None
+
+
+def _near(own: np.ndarray | None, sigma: np.ndarray) -> bool:
+    """Whether a specimen of this stress stays as it is for a point of stress sigma."""
+    return own is not None and bool(np.abs(own - sigma).max() < -NEAR * np.trace(own) / len(own))
 
 
 def bring(rve: rvelab.Rve, sigma: np.ndarray) -> None:

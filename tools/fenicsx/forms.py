@@ -77,11 +77,12 @@ class Forms:
         if self._weight is not None:
             self._weight.value[:] = _at(self._body, t)
 
-    def targets(self, start: float) -> np.ndarray:
-        """Increments of the fixed degrees of freedom from `start` to the present time, in the order of `fixed`."""
+    def targets(self) -> np.ndarray:
+        """Increments of the fixed degrees of freedom from the committed state to the present time, in the order of
+        `fixed`."""
         found = np.zeros(self.total)
         for dofs, value, factor in self._fixed:
-            found[dofs] = factor * (_at(value, self.t) - _at(value, start))
+            found[dofs] = factor * _at(value, self.t) - self.material.u.x.array[dofs]
         return found[self.fixed]
 
     def set_fixed(self, array: np.ndarray, increments: np.ndarray) -> None:

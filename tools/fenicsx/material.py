@@ -11,6 +11,7 @@ from . import compat, tensors
 from .family import Sources, chosen_sources, members
 from .nonlocal_average import Average
 from .points import Points
+from .ranks import together
 
 
 class Material:
@@ -44,7 +45,7 @@ class Material:
             raise ValueError(f"share is {share:g}; allowed: 0 (off) to 0.1, over the pressure, or True: the tolerance")
         self.mesh, self.d, self.finite, self.tolerance = mesh, mesh.geometry.dim, strains == "finite", tolerance
         d = self.d
-        self.quadrature_degree = quadrature_degree
+        self.degree, self.quadrature_degree = degree, quadrature_degree
         self.space = compat.lagrange(mesh, degree, (d,))
         self.u, self.du = fem.Function(self.space, name="displacement"), fem.Function(self.space)
         self.stress = fem.Function(compat.quadrature_space(mesh, quadrature_degree, (d, d)))
@@ -71,10 +72,10 @@ class Material:
             owned = cell_tags.indices < count
             of_cells[cell_tags.indices[owned]] = cell_tags.values[owned]
             tags = np.repeat(of_cells, nq)
-        sources = chosen_sources(specimens, tags, self.numbers)
+        sources = together(mesh.comm, lambda: chosen_sources(specimens, tags, self.numbers))
         group, family, sigma = members(mesh.comm, sources, sigma, d, options)
         share = tolerance if share is True else float(share)
-        self.points = Points(mesh.comm, d, group, family, options, share, balance, sigma)
+        self.points = Points(mesh.comm, d, group, family, options, share, False, sigma)
         self.stiffening, self.C = stiffening, None
         self.average = Average(mesh, reference, self.dx, quadrature_degree, length) if length > 0 else None
         n = len(self.numbers)
@@ -88,7 +89,8 @@ class Material:
         if self.update() < 1:
             raise ValueError("an RVE refuses its initial state: the stresses of `initial` are beyond its strength, or "
                              "the specimen is not at rest")
-        self.commit()
+        self.commit()  # without moves: RVEs begin where their points are, on any number of ranks
+        self.points.balances = balance and mesh.comm.size > 1
 
     def gradient(self, k: int) -> np.ndarray:
         """(n, d, d) of the committed displacement (0) or of its increment (1)."""

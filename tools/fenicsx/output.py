@@ -3,6 +3,7 @@ points, where they are now, with the number of their RVE)."""
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from dolfinx import fem, io
 
 from . import compat, tensors
 from .material import Material
+from .ranks import together
 
 _PAIRS = {2: ("xx", "yy", "xy"), 3: ("xx", "yy", "zz", "yz", "xz", "xy")}
 
@@ -33,9 +35,7 @@ class Output:
     def __init__(self, material: Material, folder: str | os.PathLike[str]) -> None:
         self.material, self.folder, self.times = material, Path(folder), []
         mesh = material.mesh
-        if mesh.comm.rank == 0:
-            self.folder.mkdir(parents=True, exist_ok=True)
-        mesh.comm.Barrier()
+        together(mesh.comm, self._prepare)
         self.constant = compat.lagrange(mesh, 0, ())
         self.shown = fem.Function(compat.lagrange(mesh, 1, (material.d,)), name="displacement")
         self.means: dict[str, Any] = {}
@@ -55,8 +55,17 @@ class Output:
             self.file.write_function(mean, t)
         position = material.x + self._displacement()
         parts = comm.gather((material.numbers, position, values))
-        if comm.rank == 0:
-            self._write_points(t, parts)
+        together(comm, lambda: self._write_points(t, parts) if comm.rank == 0 else None)
+
+    def _prepare(self) -> None:
+        try:
+            import h5py  # noqa: F401
+        except ImportError:
+            raise ImportError("files for ParaView need h5py, which " + (sys.executable or "this Python") + " does not "
+                              "have: tools/setup fenicsx, or apt-get install python3-h5py; the cases run without them "
+                              "by --frames 0") from None
+        if self.material.mesh.comm.rank == 0:
+            self.folder.mkdir(parents=True, exist_ok=True)
 
     def close(self) -> None:
         self.file.close()

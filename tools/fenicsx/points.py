@@ -114,8 +114,13 @@ class Points:
         return found
 
     def restore(self, snapshots: list[bytes | None], F: np.ndarray) -> None:
-        """The states of a checkpoint, into points without an RVE or with one on this rank."""
-        self.F = F.copy()
+        """Collective. The states of a checkpoint; RVEs return to the rank of their point."""
+        comm, self.F = self.comm, F.copy()
+        away = (self.home >= 0) & (self.home != comm.rank)
+        for ids in comm.alltoall([self.ids[away & (self.home == rank)] for rank in range(comm.size)]):
+            if len(ids):
+                self.pool.release(ids)
+        self.home[away], self.ids[away] = -1, 0
         for k, snapshot in enumerate(snapshots):
             if snapshot is None:
                 if self.home[k] >= 0:

@@ -41,7 +41,8 @@ class Solver:
     """Equilibrium of a Material under loads, all functions of a load parameter t, or constant:
 
     fix(where, component, value)    displacement m of a component on a part of the boundary: where maps x (3, n) to a mask;
-                                    times profile(x) (n), if there is one
+                                    times profile(x) (n), if there is one; what it is at the beginning comes with the first
+                                    increment, whole
     pressure(where, value)          Pa on a part of the boundary; at finite strains it follows the boundary
     body_force(value)               N/m^3 of the first mesh, a vector, such as (0, -17e3)
 
@@ -74,15 +75,16 @@ class Solver:
         """Increments of t up to `end`, beginning with `first`. An increment that an RVE refuses, or that does not converge,
         is halved, or cut as the RVE says, down to `least` (first/64); easy ones let the next grow up to `most` (first)."""
         least, most = first / 64 if least is None else least, first if most is None else most
-        dt = self.dt or min(first, most)
+        dt = min(self.dt or first, most)
         self.forms.set_time(self.t)  # compiles the forms, outside of the seconds of an increment
         while self.t < end * (1 - 1e-12):
             refused, begun = 0, time.perf_counter()
             while True:
-                done, share = self._increment(min(dt, end - self.t))
+                tried = min(dt, end - self.t)
+                done, share = self._increment(tried)
                 if done:
                     break
-                refused, dt = refused + 1, dt * share
+                refused, dt = refused + 1, tried * share
                 if dt < least:
                     raise NotConverged(f"at t = {self.t:.6g} no increment of {least:.3g} or more converges: the body "
                                        "fails under its loads (prescribe displacements to go on), or the tolerance is "
@@ -98,7 +100,7 @@ class Solver:
         """The increment, with its trials committed; or none, and the share of dt to try."""
         material, forms, start = self.material, self.forms, self.t
         forms.set_time(start + dt)
-        target = forms.targets(start)  # increments of the fixed degrees of freedom
+        target = forms.targets()  # increments of the fixed degrees of freedom
         array = material.du.x.array
         trials, iterations, residuals = 0, 0, []
         secants = Secants(material.mesh.comm, forms.free)

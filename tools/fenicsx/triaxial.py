@@ -17,6 +17,24 @@ from .solver import Solver
 RADIUS, HALF = 0.5, 1.0
 
 
+def quarter(comm, n):
+    """The body over a quarter of the section."""
+    body = mesh.create_box(comm, [(0, 0, 0), (1, 1, HALF)], (n, n, 2 * n), mesh.CellType.hexahedron)
+    x, y = body.geometry.x[:, 0].copy(), body.geometry.x[:, 1].copy()
+    # The quarter of a square onto that of a disc, whose outer sides meet on the diagonal.
+    body.geometry.x[:, 0] = RADIUS * x * np.sqrt(1 - y ** 2 / 2)
+    body.geometry.x[:, 1] = RADIUS * y * np.sqrt(1 - x ** 2 / 2)
+    return body
+
+
+def wall(n):
+    """`where` of the curved side. Its nodes lie at the angles asin(s/sqrt(2)), widest apart at the diagonal; the middles
+    of facets are as near to the axis as their chords."""
+    gap = np.pi / 4 - np.arcsin((1 - 1 / n) * np.sqrt(0.5))
+    chord = RADIUS * np.cos(gap / 2) * (1 - 1e-9)
+    return lambda p: np.hypot(p[0], p[1]) > chord
+
+
 def alone(o, comm, file):
     """Strain and stress ratio of the specimen in its own drained test (the first rank runs it)."""
     found = None
@@ -35,12 +53,7 @@ def main(words, comm):
     parser.add_argument("--smooth", action="store_true", help="smooth plates: the strain is that of one RVE")
     o = parser.parse_args(words)
     n = o.elements
-    body = mesh.create_box(comm, [(0, 0, 0), (1, 1, HALF)], (n, n, 2 * n), mesh.CellType.hexahedron)
-    x, y = body.geometry.x[:, 0].copy(), body.geometry.x[:, 1].copy()
-    # The quarter of a square onto that of a disc, whose outer sides meet on the diagonal.
-    body.geometry.x[:, 0] = RADIUS * x * np.sqrt(1 - y ** 2 / 2)
-    body.geometry.x[:, 1] = RADIUS * y * np.sqrt(1 - x ** 2 / 2)
-    material = cases.material(o, comm, body, initial=geostatic(HALF, 0, 1, o.pressure, 3))
+    material = cases.material(o, comm, quarter(comm, n), initial=geostatic(HALF, 0, 1, o.pressure, 3))
     solver = Solver(material)
     top = lambda p: np.isclose(p[2], HALF)  # noqa: E731
     for k in range(3):
@@ -48,8 +61,7 @@ def main(words, comm):
     solver.fix(top, 2, lambda t: -HALF * t)
     for k in range(2) if not o.smooth else ():
         solver.fix(top, k)
-    chord = RADIUS * np.cos(np.pi / 8 / n) * (1 - 1e-9)  # middles of facets are this near to the axis
-    solver.pressure(lambda p: np.hypot(p[0], p[1]) > chord, o.pressure)
+    solver.pressure(wall(n), o.pressure)
     s = np.linspace(0, 1, n + 1)  # the section is a polygon
     side = np.column_stack([np.sqrt(1 - s ** 2 / 2), s * np.sqrt(0.5)]) * RADIUS
     section = np.abs(np.sum(side[:-1, 0] * side[1:, 1] - side[1:, 0] * side[:-1, 1]))

@@ -77,8 +77,11 @@ def judge_biaxial(runs, alone, together, apart):
                     f"{together:.1f} degrees")
     for length in ("0", "0.25"):
         coarse, fine = runs[f"4_{length}"]["end"], runs[f"6_{length}"]["end"]
-        verdict(f"load at the end, 128 over 288 points, length {length} m", f"{coarse / fine:.3f}",
-                "0.97 to 1.03" if length != "0" else "", length == "0" or abs(coarse / fine - 1) <= 0.03)
+        what, found = f"load at the end, 128 over 288 points, length {length} m", f"{coarse / fine:.3f}"
+        if length == "0":  # behind the peak the mesh decides, nothing is asked
+            print(f"{what:<76} {found}")
+        else:
+            verdict(what, found, "0.97 to 1.03", abs(coarse / fine - 1) <= 0.03)
     fine = runs["6_0"]
     low, high = 45 + fine["psi"] / 2, 45 + fine["phi"] / 2
     verdict("band of 288 points without a length, degrees", f"{fine['band']:.0f}", f"{low - 5:.0f} to {high + 5:.0f}",
