@@ -48,7 +48,7 @@ sheet::Test made_test(const SheetSetup& setup, const SheetTest& planned, protoco
   test.density = specimen.group;
   test.density_name = group.name;
   test.relative_density = group.relative_density;
-  test.seed = specimen.seed;
+  test.seed = specimen.number + 1;  // those of a number, over densities, make one estimate
   test.pressure = variant.pressure;
   test.amplitude = variant.amplitude;
   if (!run.result.records.empty()) test.void_ratio = run.result.records.front().void_ratio;

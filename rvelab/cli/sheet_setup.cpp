@@ -15,6 +15,7 @@
 #include "rvelab/io/publish.hpp"
 #include "rvelab/keys/regular_file.hpp"
 #include "rvelab/keys/table_reader.hpp"
+#include "rvelab/sheet/fitted_models.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -116,12 +117,15 @@ void expect_same(const std::string& file, const Json& asked) {
                        "folder, or start again with --force");
 }
 
+/// With what was made of them, so that a sheet that stops is not taken for the old one.
 void remove_records(const SheetArguments& arguments) {
   std::error_code ignored;
   for (const char* part : {"tests", "specimens"})
     for (const auto& entry : fs::directory_iterator(arguments.file(part), ignored))
       if (const auto ending = entry.path().extension(); ending == ".h5" || ending == ".journal")
         fs::remove(entry.path());
+  sheet::remove_models(arguments.folder);
+  for (const char* name : {"index.html", "summary.json", "summary.csv"}) fs::remove(arguments.file(name), ignored);
 }
 
 }  // namespace

@@ -41,6 +41,21 @@ void sort_by_number(SheetSpecimens& specimens) {
                    [](const SheetSpecimen& a, const SheetSpecimen& b) { return a.number < b.number; });
 }
 
+/// InputError for a setting of the recipe that says what the plan says of each density.
+void expect_density_of_plan(const sheet::Plan& plan, const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings)
+    for (const char* key : {"target.relative_density", "target.void_ratio", "target.porosity"})
+      for (const sheet::PlanDensity& density : plan.densities) {
+        if (setting.substr(0, setting.find_first_of(" =")) != key || (!density.relative_density && !density.void_ratio))
+          continue;
+        const std::string own =
+            "density." + density.name + (density.relative_density ? ".relative_density" : ".void_ratio");
+        throw InputError("--set " + setting + " contradicts " + own + " of " + plan.path +
+                         "; allowed: the density of each group of specimens; give --set " + own +
+                         "=VALUE in its place");
+      }
+}
+
 /// The recipe for specimens of a density, in the place of that of the recipe.
 pack::RecipeFile recipe_for(const sheet::Plan& plan, const sheet::PlanDensity& density, const std::string& path,
                             const std::vector<std::string>& settings) {
@@ -105,6 +120,7 @@ SheetSpecimens specimens_of_recipe(const sheet::Plan& plan, const std::string& r
                                    const std::vector<std::string>& settings, const std::string& folder) {
   SheetSpecimens specimens;
   pack::read_recipe(recipe);  // its mistakes, with their lines
+  expect_density_of_plan(plan, settings);
   for (const sheet::PlanDensity& density : plan.densities) {
     const pack::RecipeFile file = recipe_for(plan, density, recipe, settings);
     if (specimens.groups.empty()) warn_of_units(recipe, file.doubts);
@@ -150,13 +166,9 @@ SheetSpecimens specimens_of_files(const sheet::Plan& plan, const std::vector<std
       specimens.groups.push_back({name, known ? planned->relative_density.value_or(sheet::unknown) : sheet::unknown});
       group = specimens.groups.end() - 1;
     }
-    const auto origin = io::file_kind(file) == io::FileKind::specimen ? io::read_origin(file) : std::nullopt;
     const std::size_t number = numbers[name]++;
-    specimens.all.push_back({file,
-                             std::size_t(group - specimens.groups.begin()),
-                             number,
-                             origin ? origin->seed : std::uint64_t(number + 1),
-                             {}});
+    specimens.all.push_back(
+        {file, std::size_t(group - specimens.groups.begin()), number, std::uint64_t(number + 1), {}});
   }
   sort_by_number(specimens);
   return specimens;

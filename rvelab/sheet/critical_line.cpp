@@ -65,8 +65,12 @@ constexpr About shear_transformation{
     critical_group, "phase_transformation_shear_deg",     "phase transformation angle, simple shear",
     "degrees",      "the same of undrained simple shear", "Ishihara, Tatsuoka and Yasuda 1975"};
 
-/// The line through the readings of void ratios, `at` p.
+/// The line through the readings of void ratios, `at` p; of NaN where p differs by less than a factor of 1.2, which is
+/// what one pressure and the strengths of its specimens leave: its slope would be that of the scatter.
 ensemble::CriticalLine line_through(const Readings& readings, LineForm form) {
+  const auto [least, most] = std::minmax_element(readings.begin(), readings.end(),
+                                                 [](const Reading& a, const Reading& b) { return a.at < b.at; });
+  if (readings.empty() || most->at < 1.2 * least->at) return {form, unknown, unknown, unknown};
   std::vector<ensemble::CriticalState> states;
   for (const Reading& each : readings) {
     states.emplace_back();
@@ -101,13 +105,17 @@ ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
     return add_number(
         sheet, number_of(about, states, [form, part](const Readings& own) { return line_through(own, form).*part; }));
   };
-  if (!add(line_void_ratio, LineForm::power, &ensemble::CriticalLine::Gamma)) {
+  const double slope =
+      number_of(line_slope, states, [](const Readings& own) { return line_through(own, LineForm::power).lambda; }).mean;
+  if (!(slope > 0)) {
     sheet.remarks.push_back(
-        "The critical state line and state parameters are left out: no specimen has end states at two pressures "
-        "(drained "
-        "at several pressures, or undrained, to 12 % of strain).");
+        "The critical state line and state parameters are left out: " +
+        (slope <= 0 ? "void ratios at the ends do not fall with the pressure, \u03bb is " + in_words(slope) + "."
+                    : std::string("no specimen has end states at two pressures, a factor of 1.2 apart (drained at "
+                                  "several pressures, or undrained, to 12 % of strain).")));
     return {LineForm::power, unknown, unknown, unknown};
   }
+  add(line_void_ratio, LineForm::power, &ensemble::CriticalLine::Gamma);
   line.Gamma = sheet.numbers.back().mean;
   add(line_slope, LineForm::power, &ensemble::CriticalLine::lambda);
   line.lambda = sheet.numbers.back().mean;

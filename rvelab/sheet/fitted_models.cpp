@@ -1,5 +1,6 @@
 #include "rvelab/sheet/fitted_models.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -71,11 +72,24 @@ FittedModels fitted_models(const std::vector<std::string>& names, const std::vec
   return found;
 }
 
+void remove_models(const std::string& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(folder) / "models", ignored)) {
+    const std::string name = entry.path().filename().string();
+    const bool of_model = std::any_of(models::names().begin(), models::names().end(),
+                                      [&](const std::string& model) { return name.starts_with(model); });
+    if (of_model && (name.ends_with(".txt") || name.ends_with(".inp"))) old.push_back(entry.path());
+  }
+  for (const auto& path : old) std::filesystem::remove(path, ignored);
+}
+
 void write_models(const FittedModels& found, const std::string& folder) {
   const std::filesystem::path models = std::filesystem::path(folder) / "models";
   std::error_code failed;
   std::filesystem::create_directories(models, failed);
   if (failed) throw InputError(models.string() + ": cannot be made (" + failed.message() + ")");
+  remove_models(folder);  // a model that is not of this sheet any more
   for (const ModelFile& file : found.files) io::publish_text((models / file.name).string(), file.text);
 }
 

@@ -26,7 +26,9 @@ struct FittedModels {
 FittedModels fitted_models(const std::vector<std::string>& names, const std::vector<Test>& tests, const Sheet& sheet,
                            Workers& workers);
 
-/// Writes the files into FOLDER/models. InputError: it cannot be written.
+/// Removes from FOLDER/models the *.txt and *.inp that begin with the name of a model.
+void remove_models(const std::string& folder);
+/// Writes the files into FOLDER/models, in the place of those there. InputError: it cannot be written.
 void write_models(const FittedModels& found, const std::string& folder);
 
 }  // namespace rvelab::sheet

@@ -69,8 +69,9 @@ Number factor_of(const Factor& factor, const Number& angle) {
   // Two specimens that differ may have an interval that leaves the angles of soils.
   const auto at = [&](double end) { return end >= 0 && end < 90 ? factor.of(end) : unknown; };
   const double one = at(angle.low), other = at(angle.high);
-  number.low = one <= other ? one : other;
-  number.high = one <= other ? other : one;
+  const bool known = std::isfinite(one) && std::isfinite(other);
+  number.low = known ? std::min(one, other) : unknown;
+  number.high = known ? std::max(one, other) : unknown;
   return number;
 }
 

@@ -20,10 +20,10 @@ const Number* number_in(const Sheet& sheet, std::string_view key) {
 Sheet numbers_of(const std::vector<Test>& tests, const std::string& soil) {
   Sheet sheet;
   sheet.soil = soil;
-  std::set<std::uint64_t> seeds;
-  std::set<std::size_t> densities;
-  for (const Test& test : tests) seeds.insert(test.seed), densities.insert(test.density);
-  if (seeds.size() == 1)
+  std::map<std::size_t, std::set<std::uint64_t>> densities;  // with their specimens
+  for (const Test& test : tests) densities[test.density].insert(test.seed);
+  const auto is_single = [](const auto& density) { return density.second.size() == 1; };
+  if (!densities.empty() && std::all_of(densities.begin(), densities.end(), is_single))
     sheet.remarks.push_back(
         "There is one specimen of each density: standard errors and intervals are not known. Give two seeds or more.");
   if (densities.size() == 1)

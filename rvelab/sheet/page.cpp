@@ -254,7 +254,7 @@ Json model_json(const models::Fit& fit, const Sheet& sheet) {
     parameters.push_back(
         {each.name, with_unit(report::in_three_digits(unit.factor * each.value), unit.unit),
          fitted ? with_unit(report::interval_in_words(unit.factor * each.low, unit.factor * each.high), unit.unit)
-                : "of the sheet",
+                : "not fitted",
          each.meaning});
   }
   Table misfits{{"test", "used for", "misfit of q (% of the largest)", "misfit of strain (%)", "remark"}};

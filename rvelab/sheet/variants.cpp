@@ -13,7 +13,7 @@ namespace {
 /// The stage that goes to and fro, and what drives it.
 struct CyclicStage {
   std::string name;
-  bool simple_shear = false;
+  bool simple_shear = false, stress_controlled = false;
 };
 
 /// InputError if the protocol has none.
@@ -22,12 +22,24 @@ CyclicStage cyclic_stage(const PlanTest& test, const protocol::Protocol& protoco
     const auto* const compression = protocol::settings_of<protocol::CompressionStage>(stage);
     const auto* const shear = protocol::settings_of<protocol::SimpleShearStage>(stage);
     if ((compression != nullptr && compression->cycles.count > 0) || (shear != nullptr && shear->cycles.count > 0))
-      return {stage.name, shear != nullptr};
+      return {stage.name, shear != nullptr, (shear != nullptr ? shear->cycles : compression->cycles).reverse_at > 0};
   }
   throw InputError(
       "test." + test.name + ": " + protocol.path +
       " has no stage of compression or simple_shear with cycles, which its amplitudes are of; allowed: one "
       "with stage.NAME.cycles > 0, such as cyclic_shear; name another protocol or another purpose");
+}
+
+/// Whether nothing but one axis moves.
+bool is_oedometric(const protocol::Stage& stage) {
+  if (const auto* const compression = protocol::settings_of<protocol::CompressionStage>(stage))
+    return compression->lateral == protocol::CompressionStage::Lateral::zero_strain;
+  const auto* const path = protocol::settings_of<protocol::PathStage>(stage);
+  if (path == nullptr) return false;
+  Matrix3 named = Matrix3::Zero();
+  for (const protocol::PathRow& row : path->rows)
+    if (row.in_stress() || !row.to.empty()) named += row.strain.cwiseAbs() + row.stress.cwiseAbs();
+  return (named.array() != 0).count() == 1 && !named.diagonal().isZero(0);
 }
 
 /// InputError unless the protocol ends with a stage that gives what the purpose asks for.
@@ -45,6 +57,10 @@ void expect_purpose(const PlanTest& test, const protocol::Protocol& protocol) {
   };
   if (test.purpose == Purpose::drained && !lateral_is(CompressionStage::Lateral::constant_stress))
     refuse("a compression at constant lateral stress", "triaxial");
+  if (test.purpose == Purpose::drained && !(compression->to_strain > 0))
+    refuse("a compression, to_strain > 0", "triaxial");
+  if (test.purpose == Purpose::oedometer && !is_oedometric(protocol.stages.back()))
+    refuse("a stage that moves one axis alone", "oedometer_unloading");
   if (test.purpose == Purpose::undrained && !lateral_is(CompressionStage::Lateral::constant_volume))
     refuse("a compression at constant volume", "triaxial_undrained");
   if (test.purpose == Purpose::undrained_shear &&
@@ -74,6 +90,10 @@ TestVariant variant(const Plan& plan, std::size_t row, const std::string& path, 
   TestVariant made{row, pressure, amplitude, {}, test.name, ""};
   std::vector<std::string> settings = test.settings;
   if (pressure > 0) {
+    if (!protocol_of(test, path, test.settings).uses_pressure)
+      throw InputError("test." + test.name + ".pressures_Pa: no stage of " + path +
+                       " takes its pressure from test.pressure_Pa; allowed: a protocol in which one does; remove "
+                       "pressures_Pa, or the pressures of its stages");
     settings.push_back("test.pressure_Pa=" + io::exact(pressure));
     made.suffix += "_" + in_words(pressure / 1000) + "kPa";
   }
@@ -84,6 +104,11 @@ TestVariant variant(const Plan& plan, std::size_t row, const std::string& path, 
     const CyclicStage stage = cyclic_stage(test, made.protocol);
     const std::string key = "stage." + stage.name + ".";
     if (test.purpose == Purpose::cyclic_strain) {
+      if (!stage.simple_shear || stage.stress_controlled)
+        throw InputError("test." + test.name + ": the cycles of " + path + " are " +
+                         (stage.simple_shear ? "turned by a stress, reverse_at_Pa" : "of a compression") +
+                         ", and purpose = \"cyclic_strain\" reads simple shear between strains; allowed: such a "
+                         "protocol, such as cyclic_shear; name one, or another purpose");
       settings.push_back(key + "to_strain=" + io::exact(amplitude));
       settings.push_back(key + "record_every=" + io::exact(amplitude / double(test.records_per_amplitude)));
     } else {

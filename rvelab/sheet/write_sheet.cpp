@@ -32,7 +32,7 @@ std::string joined_names(const std::vector<std::string>& names) {
 Json exact_number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json as_json(const Number& number) {
-  const bool judged = std::isfinite(number.published) && std::isfinite(number.low);
+  const bool judged = std::isfinite(number.published) && std::isfinite(number.low) && std::isfinite(number.high);
   return {{"key", number.key},
           {"group", number.group},
           {"label", number.label},

@@ -141,12 +141,18 @@ TEST_CASE("A folder of another sheet, a plan or a recipe with a mistake are refu
   here.refuses(one + " --resume --set 'test.drained.pressures_Pa=[100e3]'", "whose plan differ");
   here.succeeds(one + " --force --set 'test.drained.pressures_Pa=[100e3]'");
   CHECK_FALSE(std::filesystem::exists(here / "A/tests/drained_dense_200kPa_s1.h5"));
+  here.write("A/models/norsand.txt", "of an old sheet");
+  CHECK(here.run(one + " --force --set density.dense.void_ratio=0.6").code == 1);  // cannot be packed
+  for (const char* file : {"A/index.html", "A/summary.json", "A/summary.csv", "A/models/norsand.txt"})
+    CHECK_FALSE(std::filesystem::exists(here / file));
 
   here.refuses(command + "B --set 'test.drained.purpose=\"dried\"'", "test.drained.purpose", "drained");
   here.refuses(command + "B --set 'test.drained.protocol_2D=\"biaxail\"'", "test.drained", "nearest is biaxial");
   here.refuses(command + "B --set test.dranied.seeds=1", "dranied");
   here.refuses("sheet pack_dense --plan standrad -o B", "nearest is standard", "quick");
   here.refuses("sheet pack_dense --plan plan.toml -o B --set density.loose.void_ratio=x", "density.loose.void_ratio");
+  here.refuses(command + "B --set target.void_ratio=0.21", "--set target.void_ratio=0.21 contradicts",
+               "--set density.loose.void_ratio=VALUE");
   here.refuses("sheet pack_densee --plan plan.toml -o B", "nearest is pack_dense");
   here.refuses("sheet pack_dense pack_loose --plan plan.toml -o B", "pack_dense is given beside others");
   here.refuses(command + "B --set stage.compression.to_strain=0.1", "is a key of a protocol", "test.drained.settings");

@@ -130,6 +130,27 @@ TEST_CASE("what the sheet measured is taken as it is, and has no interval") {
   CHECK(parameter(found, "H").high >= parameter(found, "H").value);
 }
 
+TEST_CASE("a number of the sheet that the model cannot take is fitted, and one that the others change is told") {
+  const auto says = [](const Fit& fit, const std::string& words) {
+    return std::any_of(fit.remarks.begin(), fit.remarks.end(),
+                       [&](const std::string& each) { return each.find(words) != std::string::npos; });
+  };
+  const NorSandParameters truth{0.9, 0.03, 1.25, 0.35, 4, 150, 400, 0.2};
+  const Fit rising = fit("norsand", own_curves(NorSand(truth), 0.76, 0.66),
+                         {{"critical_line_Gamma", 0.9}, {"critical_line_lambda_ln", -0.01}});
+  CHECK(says(rising, "lambda of the sheet, -0.01, is not among what the model takes, 0.0001 to 0.3: it is fitted"));
+  CHECK(parameter(rising, "lambda").value == Approx(0.03).epsilon(0.02));
+  CHECK(std::isfinite(parameter(rising, "lambda").low));
+  CHECK(std::isnan(parameter(rising, "Gamma").low));
+
+  const HardeningSoilSmall law({38, 8, 3e7, 2.8e7, 9e7, 0.55, 0.2, 0.42, 0.88, 1.1e8, 2e-4});
+  const Fit soft =
+      fit("hardening_soil_small", own_curves(law, 0.6, 0.6), {{"K0nc", 0.42}, {"Eur_ref_Pa", 9e7}, {"G0_ref_Pa", 2e7}});
+  // G_ur = E_ur/(2 (1 + nu)).
+  CHECK(parameter(soft, "G0_ref").value == Approx(9e7 / 2.4));
+  CHECK(says(soft, "G0_ref of the sheet, 2e+07 Pa, does not go with the other parameters: 3.75e+07 Pa is used"));
+}
+
 TEST_CASE("intervals are as wide as the curves scatter, and hold the truth") {
   // Curves off by 3 %, each as a whole, up and down in turn.
   auto tests = own_curves(MohrCoulomb(36, 6, 6e7, 0.28), 0.6, 0.6);

@@ -91,6 +91,41 @@ TEST_CASE("factors of a footing are those of the angle, and their intervals thos
   CHECK(wedge.high == 45 - angle.low / 2);
 }
 
+TEST_CASE("no critical state line goes through states at one pressure, or with void ratios that rise with it") {
+  std::vector<Test> one = bolton_tests(3, 9.2, 2, 0.3);
+  std::erase_if(one, [](const Test& test) { return test.pressure != 100e3; });
+  const Sheet sheet = numbers_of(one, "sand");
+  CHECK(has(sheet, "phi_cs_deg"));
+  for (const char* key : {"critical_line_e_G", "critical_line_lambda", "critical_line_Gamma", "state_parameter"})
+    CHECK(!has(sheet, key));
+  CHECK(remarks(sheet, "a factor of 1.2 apart"));
+  std::vector<Test> rising = bolton_tests(3, 9.2, 2);
+  for (Test& test : rising)
+    for (records::Record& record : test.result.records) record.void_ratio += 2e-7 * test.pressure;
+  const Sheet risen = numbers_of(rising, "sand");
+  CHECK(!has(risen, "critical_line_e_G"));
+  CHECK(!has(risen, "state_parameter"));
+  CHECK(remarks(risen, "do not fall with the pressure"));
+}
+
+TEST_CASE("one specimen of each density is one, whatever their seeds") {
+  std::vector<Test> tests = bolton_tests(3, 9.2, 1);
+  for (Test& test : tests) test.seed += test.density;
+  CHECK(remarks(numbers_of(tests, "sand"), "There is one specimen of each density"));
+  CHECK(!remarks(numbers_of(bolton_tests(3, 9.2, 2), "sand"), "There is one specimen of each density"));
+}
+
+TEST_CASE("factors of an angle whose interval leaves those of soils have no interval") {
+  std::vector<Test> tests = bolton_tests(3, 9.2, 2, 4.0);
+  const Sheet sheet = numbers_of(tests, "sand");
+  const Number &angle = the(sheet, "secant_friction_angle_deg", "dense"),
+               &N_q = the(sheet, "bearing_capacity_Nq", "dense");
+  REQUIRE((angle.low < 0 || angle.high >= 90));
+  CHECK(std::isfinite(N_q.mean));
+  CHECK(std::isnan(N_q.low));
+  CHECK(std::isnan(N_q.high));
+}
+
 TEST_CASE("a hyperbola gives back its failure ratio, and its stiffness the exponent") {
   const double R_f = 0.85, E_i = 80e6, m = 0.55, angle = 36;
   std::vector<Test> tests;

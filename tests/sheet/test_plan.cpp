@@ -135,6 +135,16 @@ TEST_CASE("Mistakes of a plan are named with their lines and a remedy") {
   CHECK_THAT(unfit("undrained", "triaxial"), Contains("compression at constant volume"));
   CHECK_THAT(unfit("undrained_shear", "simple_shear_drained"), Contains("simple shear at constant volume"));
   CHECK_THAT(unfit("isotropic", "isotropic_compression"), Contains("probe"));
+  CHECK_THAT(unfit("drained", "triaxial_extension"), Contains("to_strain > 0"));
+  CHECK_THAT(unfit("oedometer", "triaxial"), Contains("moves one axis alone"));
+  CHECK_THAT(unfit("oedometer", "constant_p"), Contains("moves one axis alone"));
+  CHECK(variants(two_densities + test_of("a", "oedometer", "oedometer"), 3).size() == 1);
+  CHECK_THAT(unfit("cyclic_strain", "triaxial_cyclic_strain", "amplitudes = [1e-3]\n"), Contains("of a compression"));
+  CHECK_THAT(unfit("cyclic_strain", "cyclic_liquefaction", "amplitudes = [1e-3]\n"), Contains("reverse_at_Pa"));
+  CHECK_THAT(unfit("drained", "triaxial",
+                   "pressures_Pa = [50e3]\nsettings = [\"stage.isotropic.pressure_Pa=100e3\", "
+                   "\"stage.compression.lateral_pressure_Pa=100e3\"]\n"),
+             Contains("test.a.pressures_Pa") && Contains("takes its pressure from test.pressure_Pa"));
   CHECK_THAT(unfit("cyclic_strain", "triaxial", "amplitudes = [1e-3]\n"), Contains("with cycles"));
 }
 

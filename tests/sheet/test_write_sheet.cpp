@@ -7,6 +7,7 @@
 
 #include "rvelab/sheet/beside.hpp"
 #include "rvelab/sheet/element_tests.hpp"
+#include "rvelab/sheet/fitted_models.hpp"
 #include "rvelab/sheet/numbers.hpp"
 #include "tests/catch.hpp"
 #include "tests/folder.hpp"
@@ -139,7 +140,7 @@ TEST_CASE("a model is drawn over the curve of its test, with its misfit by the s
   fit.calculated = {calculated};
   const auto model = data_of(page_of_sheet(made_sheet(), {fit}))["models"][0];
   CHECK(model["parameters"][1][2] == "32.0 to 34.0\u00b0");
-  CHECK(model["parameters"][2][2] == "of the sheet");
+  CHECK(model["parameters"][2][2] == "not fitted");
   CHECK(model["misfits"][1][1] == "prediction");
   const auto series = model["figures"][0]["series"];
   REQUIRE(series.size() == 2);
@@ -287,4 +288,34 @@ TEST_CASE("numbers go by their keys; one of several densities is also their mean
   CHECK(numbers.at("R_f.dense") == 0.9);
   CHECK(numbers_by_key(made, "dense").at("R_f") == 0.9);
   CHECK(numbers_by_key(made, "dense").at("phi_cs_deg") == 31);
+}
+
+TEST_CASE("models are fitted once, or once a density; files of models that a sheet does not have are removed") {
+  std::vector<Test> tests = bolton_tests(3, 9.2, 1);
+  std::erase_if(tests, [](const Test& test) { return test.density == 1 || test.pressure == 50e3; });
+  const Sheet sheet = sheet::numbers_of(tests, "sand");
+  Workers workers(1);
+  const sheet::FittedModels found =
+      sheet::fitted_models({"mohr_coulomb", "hardening_soil_small", "norsand"}, tests, sheet, workers);
+  std::vector<std::string> models, files;
+  for (const models::Fit& fit : found.fits) models.push_back(fit.model);
+  CHECK(models == std::vector<std::string>{"Mohr-Coulomb, loose", "Mohr-Coulomb, dense", "NorSand"});
+  for (const sheet::ModelFile& file : found.files) files.push_back(file.name + ": " + file.text.substr(0, 16));
+  CHECK(files == std::vector<std::string>{"mohr_coulomb_loose_abaqus.inp: ** Mohr-Coulomb ",
+                                          "mohr_coulomb_loose_calculix.inp: ** Mohr-Coulomb ",
+                                          "mohr_coulomb_loose.txt: # Mohr-Coulomb; ",
+                                          "mohr_coulomb_dense_abaqus.inp: ** Mohr-Coulomb ",
+                                          "mohr_coulomb_dense_calculix.inp: ** Mohr-Coulomb ",
+                                          "mohr_coulomb_dense.txt: # Mohr-Coulomb; ", "norsand.txt: # NorSand; low a"});
+  REQUIRE(found.remarks.size() == 2);  // Hardening Soil of both densities
+  CHECK_THAT(found.remarks[0], Catch::Matchers::Contains("hardening_soil_small_loose is left out: "));
+
+  const Folder folder;
+  std::filesystem::create_directories(folder / "models");
+  for (const char* name : {"models/norsand.txt", "models/hypoplasticity.txt", "models/notes.txt"})
+    write_bytes(folder / name, "old");
+  sheet::write_models(found, folder.path());
+  CHECK(bytes_of(folder / "models/norsand.txt").starts_with("# NorSand"));
+  CHECK(!std::filesystem::exists(folder / "models/hypoplasticity.txt"));
+  CHECK(bytes_of(folder / "models/notes.txt") == "old");
 }

@@ -12,6 +12,10 @@ bool has_number(const Numbers& numbers, const std::string& key) {
   return found != numbers.end() && std::isfinite(found->second);
 }
 
+std::string assumed_without(const Numbers& numbers, const std::string& key) {
+  return has_number(numbers, key) ? "" : ": assumed";
+}
+
 double number_or(const Numbers& numbers, const std::string& key, double otherwise) {
   return has_number(numbers, key) ? numbers.at(key) : otherwise;
 }

@@ -46,6 +46,8 @@ constexpr double p_ref = 1e5;  ///< Pa
 /// The number of that key, else `otherwise`.
 double number_or(const Numbers& numbers, const std::string& key, double otherwise);
 bool has_number(const Numbers& numbers, const std::string& key);
+/// ": assumed" where there is no such number; end of a meaning.
+std::string assumed_without(const Numbers& numbers, const std::string& key);
 
 Tests of_loading(const Tests& tests, Loading loading);
 /// Drained and undrained ones.

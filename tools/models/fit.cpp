@@ -188,6 +188,36 @@ void set_intervals(const Residuals& residuals, const Eigen::VectorXd& z, Fit& fi
   }
 }
 
+std::string with_unit(const Entry& entry, double value) {
+  return in_words(value) + (entry.unit.empty() ? "" : " " + entry.unit);
+}
+
+/// A number of the sheet that the model cannot take is fitted, from the middle of what it takes: the search does not
+/// come away from an end.
+std::vector<Entry> within_limits(std::vector<Entry> entries, Fit& fit) {
+  for (Entry& entry : entries) {
+    if (std::isnan(entry.value)) continue;  // it follows from others
+    if (!entry.fitted && (entry.value < entry.low || entry.value > entry.high)) {
+      fit.remarks.push_back(entry.name + " of the sheet, " + with_unit(entry, entry.value) +
+                            ", is not among what the model takes, " + in_words(entry.low) + " to " +
+                            in_words(entry.high) + ": it is fitted");
+      entry.fitted = true;
+      entry.value = entry.logarithmic ? std::sqrt(entry.low * entry.high) : 0.5 * (entry.low + entry.high);
+    }
+    entry.value = std::clamp(entry.value, entry.low, entry.high);
+  }
+  return entries;
+}
+
+/// Where other parameters did not leave a number of the sheet as it was.
+void remark_changes(const std::vector<Entry>& entries, const std::vector<double>& values, Fit& fit) {
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    if (!entries[k].fitted && std::abs(values[k] - entries[k].value) > 1e-9 * std::abs(entries[k].value))
+      fit.remarks.push_back(entries[k].name + " of the sheet, " + with_unit(entries[k], entries[k].value) +
+                            ", does not go with the other parameters: " + with_unit(entries[k], values[k]) +
+                            " is used");
+}
+
 std::string counted(const Tests& tests) {
   const auto number = [&](Loading loading) { return std::to_string(of_loading(tests, loading).size()); };
   return number(Loading::drained) + " drained, " + number(Loading::undrained) + " undrained, " +
@@ -238,7 +268,7 @@ Fit fit(std::string_view model, const std::vector<ElementTest>& tests, const std
   if (const std::string missing = description.missing(fitted); !missing.empty())
     throw InputError(description.title + " needs " + missing + "; to be fitted are " + counted(fitted));
 
-  const Search search(description, description.parameters(fitted, numbers));
+  const Search search(description, within_limits(description.parameters(fitted, numbers), result));
   Residuals residuals(description, search, fitted);
   Eigen::VectorXd z = search.start();
   Eigen::LevenbergMarquardt<Residuals> minimiser(residuals);
@@ -254,6 +284,7 @@ Fit fit(std::string_view model, const std::vector<ElementTest>& tests, const std
     result.parameters.push_back({entry.name, entry.unit, entry.meaning, values[k], unknown, unknown});
   }
   set_intervals(residuals, z, result);
+  remark_changes(search.parameters(), values, result);
   if (description.warning)
     if (const std::string warning = description.warning(values); !warning.empty()) result.remarks.push_back(warning);
   if (!description.softens) remark_density_and_rise(clean, result);

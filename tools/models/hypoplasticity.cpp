@@ -46,6 +46,8 @@ std::vector<Entry> parameters_of_hypoplasticity(const Tests& tests, const Number
 
 void tie_of_hypoplasticity(std::vector<double>& v) {
   if (!std::isfinite(v[5])) v[5] = largest_over_critical * v[4];
+  v[3] = std::min(v[3], 0.98 * v[4]);  // the law needs e_d0 < e_c0 < e_i0
+  v[5] = std::max(v[5], 1.001 * v[4]);
 }
 
 std::unique_ptr<Law> law_of_hypoplasticity(const std::vector<double>& v) {
@@ -55,8 +57,6 @@ std::unique_ptr<Law> law_of_hypoplasticity(const std::vector<double>& v) {
 }  // namespace
 
 Hypoplasticity::Hypoplasticity(const HypoplasticityParameters& parameters) : given(parameters) {
-  given.e_d0 = std::min(given.e_d0, 0.98 * given.e_c0);
-  given.e_i0 = std::max(given.e_i0, 1.001 * given.e_c0);
   const double s = std::sin(given.phi_c_deg * degree);
   a = std::numbers::sqrt3 * (3 - s) / (2 * std::numbers::sqrt2 * s);
   const double loosest = (given.e_i0 - given.e_d0) / (given.e_c0 - given.e_d0);

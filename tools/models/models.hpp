@@ -30,7 +30,7 @@ struct ElementTest {
 struct Parameter {
   std::string name, unit, meaning;
   double value = unknown;
-  double low = unknown, high = unknown;  ///< 95 % interval; NaN: taken from the sheet, not fitted
+  double low = unknown, high = unknown;  ///< 95 % interval; NaN: not fitted (of the sheet, or assumed)
 };
 
 /// How well a model stands for one test.

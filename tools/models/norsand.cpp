@@ -71,7 +71,8 @@ std::vector<Entry> parameters_of_norsand(const Tests& tests, const Numbers& numb
       {"chi", "", "largest dilation over the state parameter", 3.5, 0.5, 15, true, true},
       {"H", "", "plastic hardening", 150, 2, 20000, true, true},
       {"I_r", "", "shear stiffness over the mean stress", 500, 20, 20000, true, true},
-      {"nu", "", "Poisson's ratio", number_or(numbers, "nu_ur", 0.2), 0, 0.5, false, false},
+      {"nu", "", "Poisson's ratio" + assumed_without(numbers, "nu_ur"), number_or(numbers, "nu_ur", 0.2), 0, 0.5, false,
+       false},
   };
 }
 
