@@ -9,6 +9,8 @@ import json
 import pathlib
 import shutil
 
+import numpy as np
+
 import harness
 from harness import once, results, verdict, work
 
@@ -24,13 +26,15 @@ def main():
             if number.get("published") is None:
                 continue
             scale, unit = (1e-6, "MPa") if number["unit"] == "Pa" else (1, number["unit"])
-            mean, low, high, known = (scale * number[key] for key in ("mean", "low_95", "high_95", "published"))
+            mean, low, high, known = (scale * (np.nan if number[key] is None else number[key])
+                                      for key in ("mean", "low_95", "high_95", "published"))
             verdict(f"{number['key']}, {number['published_by']}", f"{known:.3g} {mean:.3g} ({low:.3g} to {high:.3g}) {unit}",
                     "in the interval", low <= known <= high, width=60)
         for model in summary["models"]:
             for each in model["misfits"]:
                 if not each["fitted"]:
-                    print(f"{model['model']:<40} {each['test']:<40} " + (each.get("remark") or f"{each['stress']:.2f}"))
+                    off = "not comparable" if each["stress"] is None else f"{each['stress']:.2f}"
+                    print(f"{model['model']:<40} {each['test']:<40} {each.get('remark') or off}")
         shutil.copy(folder / "index.html", results / f"sheet_{soil}.html")
         print()
 
