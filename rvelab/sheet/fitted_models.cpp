@@ -44,6 +44,11 @@ void carry_out(Job& job, const std::vector<Test>& tests, const Sheet& sheet) {
     job.why_not = refused.what();
     return;
   }
+  std::string beyond;  // a model that goes so far astray is no description of these tests
+  for (const models::Misfit& misfit : job.fit.misfits)
+    if (misfit.stress > 1) beyond += (beyond.empty() ? "" : "; ") + misfit.test;
+  if (!beyond.empty())
+    job.fit.remarks.push_back("off by more than the largest stress, so not to be used for such paths: " + beyond);
   for (const auto& [host, ending] :
        std::map<std::string, std::string>{{"table", ".txt"}, {"abaqus", "_abaqus.inp"}, {"calculix", "_calculix.inp"}})
     if (std::string text = models::card(job.fit, host); !text.empty()) job.files.push_back({job.file(ending), text});

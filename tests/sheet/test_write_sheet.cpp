@@ -256,16 +256,12 @@ TEST_CASE("undrained tests are kept back, and of two densities and pressures not
 }
 
 TEST_CASE("the manual defines every number and names every figure") {
-  const auto text_of = [](const std::filesystem::path& path) {
-    std::ifstream input(path);
-    return std::string(std::istreambuf_iterator<char>(input), {});
-  };
   const std::filesystem::path root = RVELAB_SOURCE_DIR;
-  const std::string page = text_of(root / "tools/manual/pages/sheet_numbers.md");
+  const std::string page = bytes_of(root / "tools/manual/pages/sheet_numbers.md");
   const std::regex number("_group,\\s*\"([A-Za-z0-9_]+)\""), figure("Figure [a-z_]+\\{\\s*\"([A-Za-z0-9_]+)\"");
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(root / "rvelab/sheet")) {
-    const std::string code = text_of(entry.path());
+    const std::string code = bytes_of(entry.path());
     for (const std::regex& each : {number, figure})
       for (std::sregex_iterator match(code.begin(), code.end(), each), end; match != end; ++match, ++found) {
         CAPTURE((*match)[1].str());
