@@ -50,7 +50,8 @@ void check_agitation(const Recipe& recipe) {
         "two; remove one");
   if (p.least_expansion && !(p.expansion && recipe.void_ratio && *p.least_expansion <= *p.expansion))
     throw InputError(
-        "preparation.least_expansion is what a larger preparation.expansion is reduced to for a density; allowed: with "
+        "preparation.least_expansion = " + in_words(*p.least_expansion) +
+        " is what a larger preparation.expansion is reduced to for a density; allowed: with "
         "preparation.expansion, not above it, and target.void_ratio or relative_density; add or change one");
   if (p.least_expansion == 0.0 && (contacts.fabric_anisotropy || p.strain_difference))
     throw InputError(
