@@ -66,8 +66,8 @@ const char* rvelab_version(void);
 /* Capabilities of this library, bits of RVELAB_CAN_*; other bits are zero. */
 int64_t rvelab_capabilities(void);
 
-#define RVELAB_CAN_PLANE 1          /* discs and ellipses, 2D */
-#define RVELAB_CAN_SPACE 2          /* spheres, 3D */
+#define RVELAB_CAN_PLANE 1          /* 2D: discs, ellipses, clumps of discs */
+#define RVELAB_CAN_SPACE 2          /* 3D: spheres, clumps of them, ellipsoids, superellipsoids */
 #define RVELAB_CAN_TANGENT 4        /* batch.tangent */
 #define RVELAB_CAN_ERROR_ESTIMATE 8 /* batch.error_estimate */
 #define RVELAB_CAN_HOST_TASKS 16    /* pool_def.run_tasks */
@@ -139,7 +139,7 @@ typedef struct rvelab_pool_def {
   double tolerance_abs;       /* dt = 0: added to that, over p; at least a thousandth of the specimen's value */
   int64_t max_substeps;       /* an increment that needs more is discarded */
   double damping;             /* local damping at any dt, 0 < d < 1: damping force over the unbalanced force */
-  double min_height;          /* m; shortest allowed lattice vector */
+  double min_height;          /* m; shortest allowed lattice vector (not a height) */
   rvelab_run_tasks run_tasks; /* the host's own task system; null: the pool's workers */
   void* host;                 /* first argument of run_tasks */
 } rvelab_pool_def;
@@ -265,10 +265,10 @@ typedef struct rvelab_mixed {
   /* in */
   const int64_t* ids;   /* [n], each once */
   const double* strain; /* [9 rows n], A, symmetric */
-  const double* stress; /* [9 rows n], B, symmetric; unit: that of value over Pa (A: that of value) */
+  const double* stress; /* [9 rows n], B, symmetric; value in Pa: A in Pa, B without unit */
   const double* value;  /* [rows n], c */
   const double* scale;  /* [rows n]; for rows with a stress > 0: the reference of the tolerance */
-  const double* missed; /* [rows n] or null: remaining part of value from the step before */
+  const double* missed; /* [rows n] or null: part of value that the step before has not reached */
   const double* spin;   /* [9 n] or null: skew part of dH */
   /* out; null: not written */
   double* sigma;          /* [9 n], not null */

@@ -1,4 +1,4 @@
-// The representative volume element: one verb, apply an increment of displacement gradient, get the Cauchy stress.
+// The representative volume element: apply an increment of displacement gradient (or of it and stress), get the stress.
 #pragma once
 
 #include <atomic>
