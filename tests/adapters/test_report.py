@@ -56,6 +56,7 @@ def run(*words: object, program: str = "RVELAB_PROGRAM") -> str:
 
 
 def setUpModule() -> None:
+    global browser
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "downloads").mkdir()
@@ -89,6 +90,11 @@ def setUpModule() -> None:
     run("report", "cycles", "-o", "cycles.html")
     run("run", "biaxial_cemented", "--specimen", "S_dense/S_1.h5", "-o", "cemented.h5", "--set", "stage.compression.to_strain=0.01")
     run("report", "cemented.h5", "-o", "cemented.html")
+    browser = Browser(browser_program, str(folder / "downloads"))
+
+
+def tearDownModule() -> None:
+    browser.__exit__()
 
 
 class Page(unittest.TestCase):
@@ -99,12 +105,8 @@ class Page(unittest.TestCase):
     def setUpClass(cls) -> None:
         if not cls.page:
             raise unittest.SkipTest("no page")
-        cls.browser = Browser(browser_program, str(folder / "downloads"))
+        cls.browser = browser
         cls.browser.open((folder / cls.page).as_uri(), cls.width, 900, cls.phone, READY)
-
-    @classmethod
-    def tearDownClass(cls) -> None:
-        cls.browser.__exit__()
 
     def tearDown(self) -> None:
         self.assertEqual(self.browser.complaints(), [])
