@@ -173,7 +173,7 @@ class Plane(Page):
         for words in ("three.js authors", "Leon Sorokin"):
             self.assertIn(words, text)
         data = text[text.index('id="data">'):text.index("</script>", text.index('id="data">'))]
-        self.assertLess(len(text) - len(data), 800_000)
+        self.assertLess(len(text) - len(data), 550_000)
 
     def test_the_slider_moves_the_specimen_and_the_marks_of_all_curves_by_keys(self) -> None:
         self.browser.value("document.getElementById('slider').focus()")
