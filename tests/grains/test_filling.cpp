@@ -126,7 +126,7 @@ TEST_CASE("A surface from STL has the volume, the centre and the moments of its 
       CHECK(std::abs(p.inertia(0, 1)) + std::abs(p.inertia(0, 2)) + std::abs(p.inertia(1, 2)) < 1e-12);
     }
   }
-  const MassProperties ball = properties_of(read_stl(as_text(ellipsoid(4, {1, 1, 1})), "ball.stl"));
+  const MassProperties ball = properties_of(read_stl(as_text(ellipsoid(5, {1, 1, 1})), "ball.stl"));
   CHECK(ball.volume == Approx(4.0 / 3 * M_PI).epsilon(2e-3));
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("The distance to a surface is that to its faces, edges and corners", "
 }
 
 TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better the more there are", "[grains]") {
-  const Filling ball = filled(read_stl(as_text(ellipsoid(4, {1, 1, 1})), "ball.stl"), 1);
+  const Filling ball = filled(read_stl(as_text(ellipsoid(5, {1, 1, 1})), "ball.stl"), 1);
   REQUIRE(ball.spheres.size() == 1);
   CHECK(ball.spheres[0].radius == Approx(1).epsilon(5e-3));
   CHECK(ball.spheres[0].at.norm() < 5e-3);
@@ -149,7 +149,7 @@ TEST_CASE("A sphere is filled by one sphere; an ellipsoid and a box the better t
 
   const Vector3d sides(3, 2, 1);
   const Mesh block = read_stl(as_text(box(sides)), "block.stl");
-  const Mesh egg = read_stl(as_binary(ellipsoid(3, {2, 1, 0.8})), "egg.stl");
+  const Mesh egg = read_stl(as_binary(ellipsoid(4, {2, 1, 0.8})), "egg.stl");
   for (const Mesh* mesh : {&block, &egg}) {
     double before = 1e300;
     Filling filling;
