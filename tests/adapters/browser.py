@@ -32,7 +32,7 @@ class Browser:
                                          pass_fds=(to_child, from_child), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_child)
         os.close(from_child)
-        self._rest, self._number, self._session, self.events = b"", 0, None, []
+        self._rest, self._number, self._target, self._session, self.events = b"", 0, None, None, []
         self.downloads = downloads
 
     def __enter__(self) -> "Browser":
@@ -72,10 +72,12 @@ class Browser:
         return json.loads(one)
 
     def open(self, address: str, width: int = 1280, height: int = 900, phone: bool = False, ready: str = "true") -> float:
-        """Opens a page and waits for it; seconds until `ready` is true."""
+        """Opens a page in the place of the one before and waits for it; seconds until `ready` is true."""
+        before, self._target = self._target, self.call("Target.createTarget", whole_browser=True, url="about:blank")["targetId"]
+        self._session = self.call("Target.attachToTarget", whole_browser=True, targetId=self._target, flatten=True)["sessionId"]
+        if before:
+            self.call("Target.closeTarget", whole_browser=True, targetId=before)
         self.events = []
-        target = self.call("Target.createTarget", whole_browser=True, url="about:blank")["targetId"]
-        self._session = self.call("Target.attachToTarget", whole_browser=True, targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.call(f"{domain}.enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)

@@ -150,6 +150,20 @@ class Mgis(unittest.TestCase):
         self.close(stepped(finite(2, "Axisymmetrical"), *path).stress[:2, :2], (sigma + sigma.T)[:2, :2] / 2, 1e-9)
         self.assertAlmostEqual(stepped(finite(2, "Axisymmetrical"), *path).stress[2, 2], sigma[2, 2], delta=1e-4)
 
+    def test_steps_from_the_start_of_each_have_the_bits_of_the_c_interface(self) -> None:
+        # F - I of each step is exact, so that both hand the same bits in.
+        point, pool = finite(), rvelab.Pool(workers=1)
+        rve, none = pool.spawn(pool.template(SPECIMEN[1])), point.s0["gradients"].copy()
+        for step in range(1, 31):
+            dH = np.diag([step * 2.0**-18, -(2.0**-12), 0])
+            for tried in (0.5, 1.5, 1):
+                point.set(np.eye(3) + tried * dH)
+                self.assertEqual(point.call(), 1, point.message)
+            np.testing.assert_array_equal(point.s1["thermodynamic_forces"], symmetric(pool.apply(rve, dH), 4))
+            point.update()
+            point.s0["gradients"][:] = none
+        self.assertLess(point.stress[1, 1], 2 * FIRST[1][1, 1])  # it was loaded
+
     def test_each_try_of_a_first_step_may_be_accepted_and_points_are_their_own(self) -> None:
         one, other = finite(), finite()
         paths = [[np.eye(3) + scale * np.diag([2.0**-13, -(2.0**-12), 0]) for scale in (first, 2)] for first in (0.5, 1.5, 1)]

@@ -46,6 +46,8 @@ void made_frictionless(const Case& asked, Verdict& verdict) {
                     asked.tolerance);
 }
 
+enum Pull { one_axis, all_round, in_proportion };
+
 void asked_for_tension(const Case& asked, Verdict& verdict) {
   // Grains without cohesion carry no tension: the target cannot be held, which must be said (or refused), in a bounded
   // time and without a stress that pretends to.
@@ -54,21 +56,26 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
   Tested tested(s, verdict);
   const Matrix3 stress = tested.rve().stress();
   const double p = mean_pressure(stress, d);
-  // Pulled along one axis with the other stresses held, or all round.
-  const bool all_round = asked("all_round") != 0;
+  // Pulled along one axis with the other stresses held, all round, or in proportion to what it bears.
+  const auto pull = int(asked("pull"));
+  const auto change = [&](int i) {
+    return pull == in_proportion ? -1.5 * stress(i, i) : i == 0 || pull == all_round ? 0.5 * p - stress(i, i) : 0;
+  };
   MixedTarget target;
   for (int i = 0; i < d; ++i)
-    for (int k = i; k < d; ++k)
-      target.rows.push_back(i == k ? stress_row(i, i, i == 0 || all_round ? 0.5 * p - stress(i, i) : 0, p)
-                                   : strain_row(i, k, 0));
+    for (int k = i; k < d; ++k) target.rows.push_back(i == k ? stress_row(i, i, change(i), p) : strain_row(i, k, 0));
   const double dt = asked("critical_steps") * tested.rve().critical_time_step();
   if (dt == 0) {
     const auto found = refused(tested.rve(), [&](Rve& r) { r.apply(target, 0); });
     verdict.refusal("a tension that grains cannot carry", found);
     const std::string text = found ? found->text : "";
+    // In proportion the ratio of shear to pressure stays as it was until the grains part. All round the pull asks on
+    // its way for a pressure that vanishes about when the shear stress of the start does: the cell flows, or they part.
+    const bool part = contains(text, "none touches another"), flows = contains(text, "the cell sheared by");
     verdict.law("the refusal says why (" + text + ")",
-                contains(text, "the grains cannot carry it") &&
-                    (contains(text, "the cell sheared by") || (all_round && contains(text, "none touches another"))));
+                contains(text, "the grains cannot carry it") && (pull == in_proportion ? part
+                                                                 : pull == all_round   ? part || flows
+                                                                                       : flows));
     return;
   }
   const Response response = tested.apply(target, dt);
@@ -85,7 +92,7 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
 std::vector<Experiment> statics_experiments() {
   return {
       {"statics/frictionless", made_frictionless, "prepared_with 1, friction 0, shear 1, strain 1e-4, increments 1"},
-      {"statics/tension", asked_for_tension, "dimension 2, critical_steps 0, all_round 1"}};
+      {"statics/tension", asked_for_tension, "dimension 2, critical_steps 0, pull 1"}};
 }
 
 }  // namespace rvelab::test

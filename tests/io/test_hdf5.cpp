@@ -126,42 +126,29 @@ TEST_CASE("what leads out of a sealed file, or has a second name in it, is refus
              Contains("/grains/radius_m is a link to another name (/grains/semi_major_m)"));
   CHECK_THAT(refusal([&](hid_t file) { H5Lcreate_hard(file, "/", file, "/cell/again", H5P_DEFAULT, H5P_DEFAULT); }),
              Contains("/cell/again is a second name"));
-  CHECK_THAT(refusal([&](hid_t file) {
-               const hid_t space = H5Screate_simple(1, std::vector<hsize_t>{9}.data(), nullptr);
-               const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-               H5Pset_external(creation, (folder / "raw.bin").c_str(), 0, 72);
-               write_dataset(file, "/grains/radius_m", space, creation);
-               H5Pclose(creation);
-               H5Sclose(space);
-             }),
+  // A dataset of nine rows that is stored in another way.
+  const hsize_t rows = 9;
+  const auto stored = [&](const auto& choose) {
+    return refusal([&](hid_t file) {
+      const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+      choose(creation, space);
+      write_dataset(file, "/grains/radius_m", space, creation);
+      H5Pclose(creation);
+      H5Sclose(space);
+    });
+  };
+  CHECK_THAT(stored([&](hid_t creation, hid_t) { H5Pset_external(creation, (folder / "raw.bin").c_str(), 0, 72); }),
              Contains("/grains/radius_m keeps its values in another file"));
-  CHECK_THAT(refusal([&](hid_t file) {
-               const hid_t space = H5Screate_simple(1, std::vector<hsize_t>{9}.data(), nullptr);
-               const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  CHECK_THAT(stored([&](hid_t creation, hid_t space) {
                H5Pset_virtual(creation, space, other.c_str(), "/grains/radius_m", space);
-               write_dataset(file, "/grains/radius_m", space, creation);
-               H5Pclose(creation);
-               H5Sclose(space);
              }),
              Contains("/grains/radius_m is a virtual dataset"));
-  CHECK_THAT(refusal([&](hid_t file) {
-               const hsize_t rows = 9;
-               const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+  CHECK_THAT(stored([&](hid_t creation, hid_t) {
                H5Pset_chunk(creation, 1, &rows);
                H5Pset_shuffle(creation);
-               write_dataset(file, "/grains/radius_m", space, creation);
-               H5Pclose(creation);
-               H5Sclose(space);
              }),
              Contains("/grains/radius_m is compressed or filtered"));
-  CHECK_THAT(refusal([&](hid_t file) {
-               const hsize_t rows = 9;
-               const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
-               H5Pset_chunk(creation, 1, &rows);
-               write_dataset(file, "/grains/radius_m", space, creation);
-               H5Pclose(creation);
-               H5Sclose(space);
-             }),
+  CHECK_THAT(stored([&](hid_t creation, hid_t) { H5Pset_chunk(creation, 1, &rows); }),
              Contains("/grains/radius_m is in chunks"));
   CHECK_THAT(refusal([&](hid_t file) {
                hid_t at = H5Gopen2(file, "/", H5P_DEFAULT);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
@@ -39,51 +38,6 @@ Eigen::MatrixXd affine_sum(const Network& network) {
 }
 
 }  // namespace
-
-TEST_CASE("triangular crystal: K = (sqrt3/2) kn d/l, G = (sqrt3/4)(kn + kt - 3 f/l)", "[measure]") {
-  const double kn = 2e6, kt = 7e5, diameter = 1;
-  for (const double spacing : {0.9999, 0.99, 0.95}) {
-    for (const int repeat : {1, 2, 3}) {
-      CAPTURE(spacing, repeat);
-      const Eigen::MatrixXd c = elastic_tangent(triangular(diameter, spacing, repeat, {kn, kt, 0}));
-      const double force = kn * (diameter - spacing);
-      CHECK((c(0, 0) + c(0, 1)) / 2 == Approx(std::sqrt(0.75) * kn * diameter / spacing).epsilon(1e-8));
-      const double shear = std::sqrt(3.0) / 4 * (kn + kt - 3 * force / spacing);
-      CHECK(c(2, 2) == Approx(shear).epsilon(1e-8));
-      CHECK((c(0, 0) - c(0, 1)) / 2 == Approx(shear).epsilon(1e-8));
-      CHECK(c(0, 2) == Approx(0).margin(1e-8 * kn));
-    }
-  }
-}
-
-TEST_CASE("square crystal: C11 = kn, C12 = 0, C66 = kt/2 as the force vanishes", "[measure]") {
-  const double kn = 2e6, kt = 7e5;
-  for (const int repeat : {1, 3}) {
-    const Eigen::MatrixXd c = elastic_tangent(square(1, 1 - 1e-10, repeat, {kn, kt, 0}));
-    CHECK(c(0, 0) == Approx(kn).epsilon(1e-8));
-    CHECK(c(1, 1) == Approx(kn).epsilon(1e-8));
-    CHECK(c(0, 1) == Approx(0).margin(1e-8 * kn));
-    CHECK(c(2, 2) == Approx(kt / 2).epsilon(1e-8));
-  }
-}
-
-TEST_CASE("face-centred cubic crystal without pressure has the cubic constants of its bonds", "[measure]") {
-  // Six bonds along <110> in the volume l^3/sqrt2 of a grain: sum n_x^4 = 1, sum n_x^2 n_y^2 = 1/2, sum n_x^2 = 2.
-  const double kn = 2e6, kt = 7e5, spacing = 1 - 1e-11;
-  Network network = face_centred(1, spacing, 2, {kn, kt, 0});
-  Matrix3 cubic, primitive = network.cell.lattice / (2 * spacing);
-  cubic << 1, 0, 1, 1, 1, 0, 0, 1, 1;
-  network.cell.rotation = std::sqrt(0.5) * cubic * primitive.inverse();
-  const Eigen::MatrixXd c = elastic_tangent(network);
-  const double root = std::sqrt(2.0), margin = 1e-8 * kn;
-  for (int i = 0; i < 3; ++i) {
-    CHECK(c(i, i) == Approx(root * (kn + kt)).epsilon(1e-8));
-    CHECK(c(i, (i + 1) % 3) == Approx(root / 2 * (kn - kt)).epsilon(1e-8));
-    CHECK(c(3 + i, 3 + i) == Approx(root / 2 * (kn + kt)).epsilon(1e-8));
-    CHECK(c(i, 3 + i) == Approx(0).margin(margin));
-    CHECK(c(3 + i, 3 + (i + 1) % 3) == Approx(0).margin(margin));
-  }
-}
 
 TEST_CASE("a supercell is as stiff as its primitive cell", "[measure]") {
   for (const double spacing : {0.99, 0.95}) {

@@ -148,26 +148,6 @@ TEST_CASE("Clumps have the same bits by every instruction set") {
   }
 }
 
-TEST_CASE("A large cell of clumps has the same bits on any team of threads", "[solver]") {
-  for (const auto& [shape, side] : {std::pair{Shape::disc, 124}, {Shape::sphere, 25}}) {
-    Specimen start = clumps_in_a_crystal(shape, side, "pair", 0.005, 3);
-    REQUIRE(start.grains.size() >= least_shared_grains);
-    start.solver.fixed_substeps = 8;
-    const auto end_state = [&](Workers* team) {
-      Rve rve(start);
-      rve.share(team);
-      rve.apply(gradient(-3e-3, 8e-3, 0, -1e-3), 0);
-      rve.apply(gradient(-1e-3, 6e-3, 0, -1e-3), 8 * rve.critical_time_step());
-      return rve.save();
-    };
-    const auto alone = end_state(nullptr);
-    for (const unsigned threads : {2u, 3u, 8u}) {
-      Workers team(threads);
-      CHECK(bool(end_state(&team) == alone));
-    }
-  }
-}
-
 TEST_CASE("The elastic tangent of clumps is what a small increment without slip answers") {
   check_elastic_tangent(pressed_clumps(Shape::sphere, 3, "pair", 21));
 }

@@ -11,10 +11,21 @@ const licenceOf = (name) => {
   return `${name} ${version}\n${read("node_modules", name, "LICENSE").trim()}`;
 };
 
+// three.js from its sources, without the shaders of its own materials: the viewer has its own, and they are a quarter
+// of every page that a report writes.
+const ownShadersAlone = {
+  name: "own shaders alone",
+  setup(build) {
+    build.onResolve({ filter: /^three$/ }, () => ({ path: join(here, "node_modules/three/src/Three.js") }));
+    build.onLoad({ filter: /ShaderChunk\.js$/ }, () => ({ contents: "export const ShaderChunk = {};" }));
+  },
+};
+
 async function made(entry, html, libraries) {
   const done = await build({
     absWorkingDir: here, entryPoints: [`src/${entry}`], outfile: "page.js", bundle: true, minify: true, write: false, format: "iife",
     target: ["es2022"], charset: "utf8", legalComments: "none", logLevel: "warning",
+    plugins: [ownShadersAlone],
   });
   const output = (end) => done.outputFiles.find((file) => file.path.endsWith(end)).text.trim();
   const script = output(".js").replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");

@@ -56,7 +56,7 @@ class Case:
         self.tolerance, self.damping = one["tolerance"], "tsuji"
         self.values = {**defaults, **one.get("with", {})}
         self.values.update(pair.split("=") for pair in varied.split(",") if pair)
-        if {"time_step_factor", "no_tension"} & set(self.values):
+        if {"time_step_factor", "no_tension", "spread"} & set(self.values):
             self.run = None
         if one["experiment"] == "gas/haff":
             self.values["gases"] = min(gases, int(self.values["gases"]))

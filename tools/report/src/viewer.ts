@@ -1,6 +1,6 @@
 // The specimen, drawn by three.js: a rectangle a grain that its shader makes a disc, an ellipse or a lit sphere; a
 // ribbon a contact; the cell as lines. A browser without WebGL 2 gets the same picture as SVG.
-import { BufferAttribute, BufferGeometry, Color, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, LineBasicMaterial,
+import { BufferAttribute, BufferGeometry, Color, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry,
   LineSegments, Mesh, MOUSE, OrthographicCamera, RawShaderMaterial, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ink, paper } from "./palette";
@@ -59,6 +59,14 @@ void main() {
 const chainFragment = `precision highp float; precision highp int;
 in vec3 tint; out vec4 result;
 void main() { result = vec4(tint, 1.0); }`;
+
+const boxVertex = `precision highp float;
+uniform mat4 modelViewMatrix, projectionMatrix;
+in vec3 position;
+void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`;
+const boxFragment = `precision highp float;
+uniform vec3 colour; out vec4 result;
+void main() { result = vec4(colour, 1.0); }`;
 
 // An ellipsoid: the points p about its centre with p M p = 1, seen along z.
 const rockVertex = `precision highp float;
@@ -127,7 +135,9 @@ export class Viewer {
     uniforms: { kind: { value: 0 }, edge: { value: 0.85 } } });
   private chainMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: chainVertex, fragmentShader: chainFragment,
     uniforms: { lift: { value: 0 } } });
-  private box = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+  private boxMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: boxVertex, fragmentShader: boxFragment,
+    uniforms: { colour: { value: new Color() } } });
+  private box = new LineSegments(new BufferGeometry(), this.boxMaterial);
   private size = [0, 0, 0];
   private waits = 0;
   private reach = 0;
@@ -246,7 +256,7 @@ export class Viewer {
       this.place.innerHTML = this.asSvg(this);
       return;
     }
-    (this.box.material as LineBasicMaterial).color = new Color(ink());
+    this.boxMaterial.uniforms.colour.value = new Color(ink()).convertLinearToSRGB();
     this.renderer.setClearColor(paper());
     this.render(width, height, 1);
     clearTimeout(this.waits);
