@@ -73,6 +73,18 @@ class Cases(unittest.TestCase):
         self.assertTrue((np.diff(active) < 0).all() and (np.diff(passive) > 0).all())
         self.assertAlmostEqual(active[0] - (active[1] - active[0]), 0.5, delta=0.02)  # extrapolated to no displacement
         self.assertGreater(active[-1], 0.15)
+        case("wall", *options, "--to", "0.001", "--rough", "-o", "rough")
+        rough = curve("rough")
+        self.assertLess(rough["K"][-1], 0.5)
+        self.assertTrue((np.diff(rough["wall_friction_deg"]) > 0).all() and 0 < rough["wall_friction_deg"][-1] < 40)
+
+    def test_coulomb_wedge(self):
+        """Tabulated (Das, Principles of foundation engineering; from memory): phi 30, delta 20: K_a 0.2973, K_p 6.105."""
+        from rvelab.fenicsx import wall
+        phi, delta = np.radians((30, 20))
+        self.assertAlmostEqual(wall.coulomb(phi, delta, False) / np.cos(delta), 0.2973, delta=1e-4)
+        self.assertAlmostEqual(wall.coulomb(phi, delta, True) / np.cos(delta), 6.105, delta=1e-3)
+        self.assertAlmostEqual(wall.coulomb(phi, 0, True), 3, delta=1e-9)
 
     def test_cavity_begins_elastic(self):
         """The first pressures follow p0 + 2 G u/a; the outer boundary and chords take some per cent."""

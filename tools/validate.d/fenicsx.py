@@ -7,11 +7,19 @@ at the end is the same on the two finer meshes within 3 %; the band lies between
 degrees; the curve of two ranks is that of one to 0.1 % of strain, where the grains have not yet magnified the
 round-off of the solver; three iterations an increment at most.
 
-footing: `footing`, pack_medium, surcharge 100 kPa, to a settlement of a fifth of the width over two meshes, rough.
-Asked: the largest pressure lies between the formulas' by the angle at 15 % of strain and by that at the peak of the
-same specimens.
+footing: `footing`, pack_medium, surcharge 100 kPa, to a settlement of a fifth of the width: rough over three meshes, and
+smooth. Asked: the largest pressure lies between the formulas' by the angle at 15 % of strain and by that at the peak of
+the same specimens. Beside it Mohr-Coulomb points on the same meshes, which tell what the meshes do.
 
-    fenicsx.py RVELAB WORK RESULTS biaxial|footing"""
+wall: `wall`, active and passive, smooth and rough. Asked: the extreme K lies between those of Coulomb's wedge (of
+Rankine where the wall is smooth) by the same two angles, with the wall friction of the reactions.
+
+thousand: 968 points to 3 % of strain through the peak, on one rank and on two. Asked: the curves agree to 1e-9.
+
+scaling: work, messages and bytes of a rank on 1 to 16 ranks, however many cores there are.
+
+    fenicsx.py RVELAB WORK RESULTS biaxial|footing|wall|thousand|scaling"""
+import json
 import os
 import re
 import subprocess
@@ -31,11 +39,11 @@ COUNTS = dict(iterations=r"iterations per increment ([\d.]+)", trials=r"trials o
               unmade=r"(\d+) of \d+ points never", points=r"ranks?, (\d+) points")
 
 
-def case(name, *options, ranks=1):
-    """Columns of the curve of a run in WORK/NAME, and what it printed."""
+def case(name, first, *options, ranks=1, program=("-m", "rvelab.fenicsx")):
+    """Columns of the curve of a run in WORK/NAME, and what it printed. first: the case; program: of Python."""
     def make(folder):
-        command = [*(("mpirun", "-np", str(ranks)) if ranks > 1 else ()), sys.executable, "-m", "rvelab.fenicsx",
-                   *options, "-o", folder, "--frames", "0", "--keep", "0"]
+        command = [*(("mpirun", "-np", str(ranks)) if ranks > 1 else ()), sys.executable, *program,
+                   first, "--frames", "0", "--keep", "0", *options, "-o", folder]
         environment = {**os.environ, **SETTINGS, "PYTHONPATH": str(harness.ROOT / "tools/python"),
                        "RVELAB_PROGRAM": str(harness.program),
                        "RVELAB_LIBRARY": str(harness.program.parents[1] / "lib/librvelab.so.1")}
@@ -43,7 +51,7 @@ def case(name, *options, ranks=1):
         if done.returncode != 0:
             sys.exit(f"{name}: {done.stdout[-500:]}{done.stderr[-500:]}")
         (folder / "printed.txt").write_text(done.stdout)
-    folder = once(work / name, "fenicsx", *options, ranks, make=make)
+    folder = once(work / name, "fenicsx", first, *options, ranks, make=make)
     return columns(folder / "curve.csv"), (folder / "printed.txt").read_text()
 
 
@@ -132,31 +140,157 @@ def biaxial():
 
 @bars
 def judge_footing(runs):
-    print("points  base    largest pressure over the surcharge, at  by the angle at 15 %  at the peak  "
-          "iterations an increment  shared RVEs")
-    for name, each in runs.items():
-        print(f"{each['points']:6.0f}  {name.split('_')[0]:6}  {each['largest']:35.2f} {each['at']:.3f}  "
-              f"{each['low']:19.1f}  {each['high']:11.1f}  {each['iterations']:23.2f}  {each['unmade']:11.0f}")
-    for name, each in runs.items():
-        verdict(f"N_q, {name.replace('_', ' base, elements under half of it: ')}", f"{each['largest']:.2f}",
-                f"{each['low']:.1f} to {each['high']:.1f}", each["low"] <= each["largest"] <= each["high"])
+    print("points  base    elements under half of it  largest pressure over the surcharge, at  by the angle at 15 %  at the peak  "
+          "iterations an increment")
+    for each in runs.values():
+        print(f"{each['points']:6.0f}  {each['base']:6}  {each['elements']:26}  {each['largest']:35.2f} {each['at']:.3f}  "
+              f"{each['low']:19.1f}  {each['high']:11.1f}  {each['iterations']:23.2f}")
+    print("\nMohr-Coulomb points on the same meshes (fenicsx_soil.py): largest pressure over the formula's by their angle; mobilised: the "
+          "angle that RVEs have in the end which shear by more than 10 %\npoints  base    at 15 %: degrees, without dilation, "
+          "associated   mobilised: degrees, largest pressure without dilation   of grains over it")
+    for each in runs.values():
+        print(f"{each['points']:6.0f}  {each['base']:6}  {each['phi']:15.1f} {each['plain'] / each['low']:17.2f} "
+              f"{each['associated'] / each['low']:11.2f}   {each['mobilised']:18.1f} {each['as_mobilised']:35.2f}   "
+              f"{each['largest'] / each['as_mobilised']:17.2f}")
+    print()
+    for each in runs.values():
+        verdict(f"N_q, {each['base']} base, elements under half of it: {each['elements']}", f"{each['largest']:.2f}",
+                f"{each['low']:.1f} to {each['high']:.1f}", each["low"] <= each["largest"] <= each["high"],
+                abs(each["largest"] / each["as_mobilised"] - 1) <= 0.15,
+                f"RVEs that shear by more than 10 % mobilise {each['mobilised']:.1f} degrees, not the {each['phi']:.1f} of biaxial tests "
+                f"at 15 %; Mohr-Coulomb points of that angle without dilation carry {each['as_mobilised']:.1f} on this mesh "
+                f"(of {each['phi']:.1f} degrees: {each['plain']:.1f}, so that the mesh adds {each['plain'] / each['low'] - 1:.0%})")
+
+
+def mobilised(folder):
+    """Friction angle, degrees, of the points of a checkpoint that shear by more than 10 %, weighted by that strain."""
+    with np.load(folder / "checkpoint/host.npz") as file:
+        sigma, F = file["sigma"], file["F"]
+    stretch = np.linalg.svd(F, compute_uv=False)
+    shear = np.log(stretch[:, 0] / stretch[:, 1])
+    low, high = np.linalg.eigvalsh(sigma).T  # tension positive
+    weight = np.where(shear > 0.1, shear, 0)
+    return np.degrees(np.arcsin(np.sum(weight * (high - low)) / np.sum(weight * -(high + low))))
 
 
 def footing():
     runs = {}
-    for elements in (1, 2):
-        name = f"rough_{elements}"
-        options = ("--grains", "100", "--to", "0.2", "--first", "4e-3", "--elements", elements)
-        curve, printed = case(name, "footing", *options)
+    for base, elements in (("rough", 1), ("rough", 2), ("rough", 3), ("smooth", 2)):
+        name, smooth = f"{base}_{elements}", ["--smooth"] if base == "smooth" else []
+        curve, printed = case(name, "footing", "--grains", "100", "--to", "0.2", "--first", "4e-3", "--elements", elements,
+                              "--keep", "1000000", *smooth)
+        formula = re.search(r"by the formula ([\d.]+) by .* \(peak\), ([\d.]+) by ([\d.]+)", printed)
+        low, phi = float(formula.group(2)), float(formula.group(3))
+        angle = mobilised(work / name)
+
+        def soil(phi, psi):
+            found = case(f"soil_{name}_{phi:.1f}_{psi:.1f}", f"{phi:.2f},{psi:.2f}", "--elements", elements, "--to", "0.1", "--first",
+                         "4e-3", *smooth, program=(harness.ROOT / "tools/validate.d/fenicsx_soil.py",))
+            return found[0]["pressure_ratio"].max()
         ratio = curve["pressure_ratio"]
-        formula = re.search(r"by the formula ([\d.]+) by .* \(peak\), ([\d.]+) by", printed)
-        runs[name] = dict(largest=ratio.max(), at=curve["t"][ratio.argmax()], high=float(formula.group(1)),
-                          low=float(formula.group(2)), **{key: number(each, printed) for key, each in COUNTS.items()})
+        runs[name] = dict(base=base, elements=elements, largest=ratio.max(), at=curve["t"][ratio.argmax()], low=low,
+                          high=float(formula.group(1)), phi=phi, plain=soil(phi, 0), associated=soil(phi, phi), mobilised=angle,
+                          as_mobilised=soil(angle, 0), **{key: number(each, printed) for key, each in COUNTS.items()})
     judge_footing(runs)
 
 
+@bars
+def judge_wall(runs):
+    print("wall             extreme K, at   wall friction  Rankine at the peak, at 15 %  Coulomb at the peak, at 15 %  angles   points")
+    for name, each in runs.items():
+        print(f"{name.replace('_', ', '):15}  {each['extreme']:9.3f} {each['at']:.3f}  {each['delta']:13.1f}  "
+              f"{each['rankine'][0]:19.3f} {each['rankine'][1]:8.3f}  {each['coulomb'][0]:19.3f} {each['coulomb'][1]:8.3f}  "
+              f"{each['angles'][0]:.1f} {each['angles'][1]:.1f}  {each['points']:5.0f}")
+    for name, each in runs.items():
+        low, high = sorted(each["coulomb"])
+        what = "Rankine" if each["delta"] == 0 else "Coulomb"
+        verdict(f"K, {name.replace('_', ', ')}, beside {what}'s by the angles at 15 % and at the peak", f"{each['extreme']:.3f}",
+                f"{low:.3f} to {high:.3f}", low <= each["extreme"] <= high)
+
+
+def wall():
+    runs = {}
+    for side in ("active", "passive"):
+        for base in ("smooth", "rough"):
+            name = f"{side}_{base}"
+            options = ["--to", "0.03"] if side == "active" else ["--to", "0.06", "--first", "2e-3", "--passive"]
+            curve, printed = case(f"wall_{name}", "wall", "--grains", "100", "--elements", "4", *options,
+                                  *(["--rough"] if base == "rough" else []))
+            K = curve["K"]
+            at = K.argmin() if side == "active" else K.argmax()
+            theory = {each: list(zip(*re.findall(r"([\d.]+) by ([\d.]+) degrees", re.search(f"{each} (.*)", printed).group(1))))
+                      for each in ("Rankine", "Coulomb")}
+            floats = lambda words: list(map(float, words))  # noqa: E731
+            runs[name] = dict(extreme=K[at], at=curve["t"][at], delta=curve["wall_friction_deg"][at],
+                              rankine=floats(theory["Rankine"][0]), coulomb=floats(theory["Coulomb"][0]),
+                              angles=floats(theory["Coulomb"][1]), points=number(COUNTS["points"], printed))
+    judge_wall(runs)
+
+
+@bars
+def judge_scaling(strong, weak, uneven):
+    print("A step: an increment. Of a rank: grain-steps (mean; the busiest over it), messages and bytes of RVEs to other ranks (answers "
+          "and work; moves), ghosts\n(degrees of freedom, 8 bytes each, once a solution and once a residual); MUMPS: entries and "
+          "operations of a factorisation")
+    for title, rows in (("one mesh", strong), ("as many points a rank", weak), ("a footing, RVEs move and stay", uneven)):
+        print(f"\n{title}\nranks  points  iterations, trials  grain-steps  busiest  moved  messages  bytes: answers, work, moves  "
+              "ghosts  MUMPS: unknowns, entries, operations")
+        for each in rows:
+            sent, volume = each["messages"], each["bytes"]
+            print(f"{each['ranks']:5}  {each['points']:6}  {each['iterations']:10.2f} {each['trials']:7.2f}  {each['work']:11.3g}  "
+                  f"{each['spread']:7.2f}  {each['moved']:5}  {sum(sent.values()):8.1f}  {volume['answers']:14.0f} {volume['work']:5.0f} "
+                  f"{volume['moves']:6.0f}  {each['ghosts']:6}  {each['unknowns']:15} {each['factor_entries']:8} "
+                  f"{each['factor_operations']:11.3g}")
+    print()
+    one, most = strong[0], strong[-1]
+    verdict("grain-steps of a step, 16 ranks over one", f"{most['work'] * most['ranks'] / one['work']:.9f}", "1",
+            most["work"] * most["ranks"] == one["work"])
+    verdict("one mesh, busiest rank over the mean, the most", f"{max(each['spread'] for each in strong):.2f}", "<= 1.3",
+            max(each["spread"] for each in strong) <= 1.3)
+    verdict("a footing, busiest rank over the mean, RVEs move", f"{uneven[0]['spread']:.2f}", f"< {uneven[1]['spread']:.2f} (they stay)",
+            uneven[0]["spread"] < uneven[1]["spread"])
+
+
+def scaling():
+    def counted(name, ranks, which, *options):
+        _, printed = case(f"counts_{name}_{ranks}", which, "--grains", "50", *options, ranks=ranks,
+                          program=(harness.ROOT / "tools/validate.d/fenicsx_counts.py",))
+        return json.loads(printed.splitlines()[-1])
+    block = lambda elements, ranks: counted(f"block_{elements}", ranks, "biaxial", "--elements", elements, "--to", "0.005")  # noqa: E731
+    strong = [block(8, ranks) for ranks in (1, 2, 4, 8, 16)]
+    weak = [block(*each) for each in ((2, 1), (3, 2), (4, 4), (6, 8))] + strong[-1:]
+    uneven = [counted(f"footing{len(stays)}", 8, "footing", "--elements", "2", "--to", "0.04", "--first", "4e-3", *stays)
+              for stays in ((), ("--no-balance",))]
+    judge_scaling(strong, weak, uneven)
+
+
+@bars
+def judge_thousand(runs, apart):
+    print("ranks  points  peak load ratio, at  at the end, at  iterations, trials an increment  "
+          "grain-steps an increment and RVE  shared RVEs  busiest rank over the mean, moved")
+    for ranks, each in runs.items():
+        print(f"{ranks:>5}  {each['points']:6.0f}  {each['peak']:15.3f} {each['at']:.4f}  {each['end']:8.3f} "
+              f"{each['reached']:.4f}  {each['iterations']:10.2f} {each['trials']:8.2f}  {each['work']:32.3g}  "
+              f"{each['unmade']:11.0f}  {each['busiest']:11.2f} {each['moved']:13.0f}")
+    one = runs["1"]
+    verdict("points", f"{one['points']:.0f}", ">= 950", one["points"] >= 950)
+    verdict("strain reached; peak before it", f"{one['reached']:.4f}, {one['at']:.4f}", "0.03, before",
+            one["reached"] >= 0.03 * (1 - 1e-9) and one["at"] < one["reached"])
+    verdict("curves of one and two ranks to the end, largest difference", f"{apart:.1e}", "<= 1e-9", apart <= 1e-9)
+    verdict("iterations an increment", f"{one['iterations']:.2f}", "<= 3", one["iterations"] <= 3)
+
+
+def thousand():
+    options = ("biaxial", "--grains", "200", "--elements", "11", "--to", "0.03")
+    found = {ranks: case(f"thousand_{ranks}", *options, ranks=ranks) for ranks in (1, 2)}
+    runs = {ranks: figures_of(*each) | {"busiest": 1.0, "moved": 0} for ranks, each in found.items()}
+    runs[2] |= dict(busiest=number(r"over the mean: mean ([\d.]+)", found[2][1]), moved=number(r"ranks: (\d+)", found[2][1]))
+    apart = np.abs(found[1][0]["load_ratio"] / found[2][0]["load_ratio"] - 1).max()
+    judge_thousand(runs, apart)
+
+
 def main():
-    {"biaxial": biaxial, "footing": footing}[harness.words[0]]()
+    {"biaxial": biaxial, "footing": footing, "wall": wall, "thousand": thousand, "scaling": scaling}[harness.words[0]]()
     return False
 
 
