@@ -24,7 +24,7 @@ class Getfem(unittest.TestCase):
         file = FOLDER / "S.h5"
         rvelab.pack("pack_dense", file, {"pack.number": 50}, overwrite=True)
         done = subprocess.run([sys.executable, "-W", "ignore", EXAMPLE, file], capture_output=True, text=True, check=True)
-        rows = re.findall(r"strain ([\d.]+)  load ratio ([\d.]+)  iterations (\d+)  .* ([\d.e-]+)$", done.stdout, re.MULTILINE)
+        rows = re.findall(r"strain ([\d.]+)  load ratio ([\d.]+)  iterations (\d+)  .* ([\d.e-]+)$", done.stdout, re.M)
         strain, load, iterations, apart = np.array(rows, float).T
         self.assertEqual(len(rows), 8)
         self.assertLess(apart.max(), 1e-10)

@@ -57,8 +57,8 @@ def main(words, comm):
     extreme, delta = found["K"][at], found["wall_friction_deg"][at]
     told = {"Rankine": [], "Coulomb": []}
     for name, phi in zip(("peak", "15 %"), cases.angles(o, comm, [vertical / HEIGHT * (1 if o.passive else extreme)])):
-        for theory, angle in zip(told, (0, delta)):
-            K = coulomb(np.radians(phi), np.radians(max(angle, 0)), o.passive)
+        for theory, angle in zip(told, (0, max(delta, 0))):
+            K = coulomb(np.radians(phi), np.radians(angle), o.passive)
             told[theory].append(f"{K:.3f} by {phi:.1f} degrees ({name})")
     cases.tell(comm, f"{'largest' if o.passive else 'least'} K {extreme:.3f}, at the end {found['K'][-1]:.3f}; wall friction "
                f"{delta:.1f} degrees", *(f"{theory} {', '.join(each)}" for theory, each in told.items()))
