@@ -2,8 +2,10 @@
 import csv
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -41,7 +43,7 @@ class Cases(unittest.TestCase):
         np.testing.assert_allclose(whole["load_ratio"], expected, rtol=0.03)
         self.assertTrue((FOLDER / "biaxial/fields/points.xdmf").exists())
         case("biaxial", *options[:-1], "0.002", "-o", "parts")
-        self.assertIn("4 rows of the run before", case("biaxial", *options, "-o", "parts", "--resume"))
+        self.assertIn("4 rows of the run before\n ", case("biaxial", *options, "-o", "parts", "--resume"))
         np.testing.assert_array_equal(curve("parts")["load_ratio"], whole["load_ratio"])
         said = case("rve", "parts/checkpoint", "3", "-o", "three.h5")
         self.assertIn("three.h5: the RVE of point 3", said)
@@ -107,8 +109,23 @@ class Cases(unittest.TestCase):
             body = triaxial.quarter(MPI.COMM_SELF, n)
             self.assertEqual(len(compat.locate(body, 2, triaxial.wall(n))), 2 * n * 2 * n)
 
+    def test_an_interrupt_names_the_checkpoint(self):
+        running = subprocess.Popen([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", "biaxial", "--specimens",
+                                    stand_in.specimen(), "--elements", "1", "--frames", "0", "--keep", "1", "-o", "stopped"],
+                                   cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        kept = FOLDER / "stopped/checkpoint/host.npz"
+        while running.poll() is None and not kept.exists():
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        said = running.communicate()[1]
+        self.assertRegex(said.strip(), r"^rvelab.fenicsx: stopped after t = [\d.e-]+; stopped/checkpoint holds the last "
+                         r"checkpoint, --resume goes on from it$")
+        self.assertEqual(running.returncode, 130)
+
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
+        self.assertEqual(case("biaxial", "--elemnts", "3", code=2).splitlines(), ["rvelab.fenicsx: there is no option --elemnts; the "
+                         "nearest is --elements (python3 -m rvelab.fenicsx biaxial --help lists all)"])
         self.assertIn("there is no file none.h5", case("biaxial", "--specimens", "none.h5", code=2))
         with_file = ("--specimens", stand_in.specimen())
         self.assertIn("no checkpoint was made there", case("biaxial", *with_file, "--resume", "-o", "new", code=2))

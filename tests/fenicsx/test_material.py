@@ -268,6 +268,9 @@ class Compatibility(unittest.TestCase):
                               capture_output=True, text=True)
         self.assertIn("rvelab.fenicsx needs dolfinx, which", done.stderr.splitlines()[-1])
         self.assertIn("tools/setup fenicsx", done.stderr.splitlines()[-1])
+        done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['dolfinx'] = None; sys.argv[0] = '-m'; "
+                               "import rvelab.fenicsx"], capture_output=True, text=True)  # as python3 -m rvelab.fenicsx
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
 
 
 if __name__ == "__main__":

@@ -162,7 +162,7 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
         o.output.mkdir(parents=True, exist_ok=True)
     folder = o.output / (f"fields_from_{solver.t:.4g}" if o.resume else "fields")
     fields = Output(solver.material, folder) if o.frames else None
-    _print(first, f"{len(rows)} rows of the run before" if o.resume else "", "  ".join(f"{name:>12}" for name in names),
+    _print(first, f"{len(rows)} rows of the run before\n" if o.resume else "", "  ".join(f"{name:>12}" for name in names),
            "  iterations  residual  RVEs")
     try:
         for step in solver.march(o.to, o.first):
