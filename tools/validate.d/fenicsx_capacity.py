@@ -42,7 +42,8 @@ def judge_footing(runs, meshes):
                 f"RVEs that shear by more than 10 % mobilise {each['mobilised']:.1f} degrees, not the {each['phi']:.1f} of "
                 f"biaxial tests at 15 %; Mohr-Coulomb points of that angle without dilation carry "
                 f"{each['as_mobilised']:.1f} on this mesh (of {each['phi']:.1f} degrees {each['plain']:.1f}: the mesh adds "
-                f"{each['plain'] / each['low'] - 1:.0%})")
+                f"{each['plain'] / each['low'] - 1:.0%}); the {1 - each['largest'] / each['as_mobilised']:.0%} that are left are not "
+                "isolated")
 
 
 def mobilised(folder):
