@@ -8,7 +8,8 @@ import warnings
 from mpi4py import MPI
 
 CASES = {"biaxial": "a block to a band of shear", "footing": "a strip footing beside N_q and N_gamma",
-         "wall": "a retaining wall, active or passive, beside Rankine and Coulomb", "cavity": "an expanding cylindrical cavity",
+         "wall": "a retaining wall, active or passive, beside Rankine and Coulomb",
+         "cavity": "an expanding cylindrical cavity",
          "triaxial": "a cylinder of spheres between rough plates"}
 
 
