@@ -48,7 +48,7 @@ class NeoHooke:
         self.d, self.p, self.shear, self.lame = d, p, shear, lame
         self.F = np.tile(np.eye(d), (n, 1, 1))
 
-    def trial(self, dH):
+    def trial(self, dH, tangent=True):
         d, one = self.d, np.eye(self.d)
         self.new = (one + dH) @ self.F
         J = np.linalg.det(self.new)[:, None, None]

@@ -2,8 +2,10 @@
 import csv
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
 import unittest
 from pathlib import Path
 
@@ -41,7 +43,7 @@ class Cases(unittest.TestCase):
         np.testing.assert_allclose(whole["load_ratio"], expected, rtol=0.03)
         self.assertTrue((FOLDER / "biaxial/fields/points.xdmf").exists())
         case("biaxial", *options[:-1], "0.002", "-o", "parts")
-        self.assertIn("4 rows of the run before", case("biaxial", *options, "-o", "parts", "--resume"))
+        self.assertIn("4 rows of the run before\n ", case("biaxial", *options, "-o", "parts", "--resume"))
         np.testing.assert_array_equal(curve("parts")["load_ratio"], whole["load_ratio"])
         said = case("rve", "parts/checkpoint", "3", "-o", "three.h5")
         self.assertIn("three.h5: the RVE of point 3", said)
@@ -73,6 +75,18 @@ class Cases(unittest.TestCase):
         self.assertTrue((np.diff(active) < 0).all() and (np.diff(passive) > 0).all())
         self.assertAlmostEqual(active[0] - (active[1] - active[0]), 0.5, delta=0.02)  # extrapolated to no displacement
         self.assertGreater(active[-1], 0.15)
+        case("wall", *options, "--to", "0.001", "--rough", "-o", "rough")
+        rough = curve("rough")
+        self.assertLess(rough["K"][-1], 0.5)
+        self.assertTrue((np.diff(rough["wall_friction_deg"]) > 0).all() and 0 < rough["wall_friction_deg"][-1] < 40)
+
+    def test_coulomb_wedge(self):
+        """Tabulated (Das, Principles of foundation engineering; from memory): phi 30, delta 20: K_a 0.2973, K_p 6.105."""
+        from rvelab.fenicsx import wall
+        phi, delta = np.radians((30, 20))
+        self.assertAlmostEqual(wall.coulomb(phi, delta, False) / np.cos(delta), 0.2973, delta=1e-4)
+        self.assertAlmostEqual(wall.coulomb(phi, delta, True) / np.cos(delta), 6.105, delta=1e-3)
+        self.assertAlmostEqual(wall.coulomb(phi, 0, True), 3, delta=1e-9)
 
     def test_cavity_begins_elastic(self):
         """The first pressures follow p0 + 2 G u/a; the outer boundary and chords take some per cent."""
@@ -95,8 +109,23 @@ class Cases(unittest.TestCase):
             body = triaxial.quarter(MPI.COMM_SELF, n)
             self.assertEqual(len(compat.locate(body, 2, triaxial.wall(n))), 2 * n * 2 * n)
 
+    def test_an_interrupt_names_the_checkpoint(self):
+        running = subprocess.Popen([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", "biaxial", "--specimens",
+                                    stand_in.specimen(), "--elements", "1", "--frames", "0", "--keep", "1", "-o", "stopped"],
+                                   cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        kept = FOLDER / "stopped/checkpoint/host.npz"
+        while running.poll() is None and not kept.exists():
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        said = running.communicate()[1]
+        self.assertRegex(said.strip(), r"^rvelab.fenicsx: stopped after t = [\d.e-]+; stopped/checkpoint holds the last "
+                         r"checkpoint, --resume goes on from it$")
+        self.assertEqual(running.returncode, 130)
+
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
+        self.assertEqual(case("biaxial", "--elemnts", "3", code=2).splitlines(), ["rvelab.fenicsx: there is no option --elemnts; the "
+                         "nearest is --elements (python3 -m rvelab.fenicsx biaxial --help lists all)"])
         self.assertIn("there is no file none.h5", case("biaxial", "--specimens", "none.h5", code=2))
         with_file = ("--specimens", stand_in.specimen())
         self.assertIn("no checkpoint was made there", case("biaxial", *with_file, "--resume", "-o", "new", code=2))

@@ -105,6 +105,28 @@ class Convergence(unittest.TestCase):
         self.assertTrue(any("stopped at what the RVEs resolve" in line for line in fenicsx.summary(solver)))
 
 
+    def test_tangents_are_asked_for_where_they_are_worth_it(self):
+        """In the first trial of an increment, and after an iteration that left more than SLOW of the residual: fewer than
+        in all trials (SLOW 0), to the same loads."""
+        from unittest import mock
+        from rvelab.fenicsx import solver as module
+        loads, asked = {}, {}
+        for slow in (0, module.SLOW):
+            material = fenicsx.Material(block(), [specimen(), specimen("loose", 50, "pack_loose")])
+            solver, told = compressed(material), []
+            trial = material.points.trial
+            material.points.trial = lambda dH, tangent, trial=trial, told=told: told.append(tangent) or trial(dH, tangent)
+            with mock.patch.object(module, "SLOW", slow):
+                steps = list(solver.march(4e-3, 5e-4))
+            loads[slow], asked[slow] = solver.reaction(edges("top"))[1], sum(told)
+            self.assertEqual(len(told), sum(step.trials for step in steps))
+            if slow == 0:
+                self.assertTrue(all(told))
+        self.assertGreaterEqual(asked[module.SLOW], len(steps))
+        self.assertLess(asked[module.SLOW], 0.7 * asked[0])
+        self.assertAlmostEqual(loads[module.SLOW] / loads[0], 1, delta=5e-3)
+
+
 class Increments(unittest.TestCase):
     def test_one_that_is_refused_is_cut_and_the_next_ones_grow(self):
         material = fenicsx.Material(block((1, 1)), specimen())

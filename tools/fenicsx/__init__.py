@@ -21,9 +21,13 @@ except ModuleNotFoundError as missing:
     if missing.name not in ("dolfinx", "mpi4py", "petsc4py"):
         raise
     import sys as _sys
-    raise ImportError(f"rvelab.fenicsx needs {missing.name}, which {_sys.executable or 'this Python'} does not have: "
-                      "tools/setup fenicsx, or apt-get install python3-dolfinx-real; other systems: "
-                      "https://fenicsproject.org/download") from None
+    _text = (f"rvelab.fenicsx needs {missing.name}, which {_sys.executable or 'this Python'} does not have: "
+             "tools/setup fenicsx, or apt-get install python3-dolfinx-real; other systems: "
+             "https://fenicsproject.org/download")
+    if _sys.argv[:1] == ["-m"]:  # python3 -m rvelab.fenicsx: a line is enough
+        print(_text, file=_sys.stderr)
+        _sys.exit(2)
+    raise ImportError(_text) from None
 from .checkpoint import load, rve, save
 from .material import Material, geostatic
 from .output import Output

@@ -8,7 +8,8 @@ import warnings
 from mpi4py import MPI
 
 CASES = {"biaxial": "a block to a band of shear", "footing": "a strip footing beside N_q and N_gamma",
-         "wall": "a retaining wall, active or passive, beside Rankine", "cavity": "an expanding cylindrical cavity",
+         "wall": "a retaining wall, active or passive, beside Rankine and Coulomb",
+         "cavity": "an expanding cylindrical cavity",
          "triaxial": "a cylinder of spheres between rough plates"}
 
 
@@ -33,6 +34,9 @@ def main(words: list[str]) -> int:
             raise ValueError(f"there is no case {words[0]!r}; allowed: {', '.join(CASES)}, rve")
         importlib.import_module("." + words[0], __package__).main(words[1:], comm)
         return 0
+    except KeyboardInterrupt as stopped:
+        print(f"\nrvelab.fenicsx: {stopped or 'stopped'}" if comm.rank == 0 else "", file=sys.stderr, flush=True)
+        return 130
     except Exception as error:
         if isinstance(error, (ValueError, RuntimeError, OSError, ImportError)):  # RvelabError is a RuntimeError
             print(f"rvelab.fenicsx: {error}", file=sys.stderr, flush=True)

@@ -3,13 +3,17 @@ from __future__ import annotations
 
 import argparse
 import csv
+import difflib
+import re
+import sys
 import warnings
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, NoReturn, Sequence
 
 import numpy as np
 import rvelab
 from dolfinx import mesh
+from mpi4py import MPI
 
 from .checkpoint import load, save
 from .material import Material
@@ -33,10 +37,28 @@ def count(text: str) -> int:
     return int(text)
 
 
+class Options(argparse.ArgumentParser):
+    """Help and mistakes are the same on all ranks, and printed by the first. A mistake is one line, with the nearest
+    option."""
+
+    def print_help(self, file: Any = None) -> None:
+        if MPI.COMM_WORLD.rank == 0:
+            super().print_help(file)
+
+    def error(self, message: str) -> NoReturn:
+        unknown = re.fullmatch(r"unrecognized arguments: (--[^\s=]+).*", message)
+        near = difflib.get_close_matches(unknown.group(1), self._option_string_actions) if unknown else []
+        if unknown:
+            message = f"there is no option {unknown.group(1)}" + (f"; the nearest is {near[0]}" if near else "")
+        if MPI.COMM_WORLD.rank == 0:
+            print(f"rvelab.fenicsx: {message} ({self.prog} --help lists all)", file=sys.stderr, flush=True)
+        sys.exit(2)
+
+
 def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
     """Options of a case; defaults: recipe, grains, draws, elements, to, first."""
-    made = argparse.ArgumentParser(prog=f"python3 -m rvelab.fenicsx {name}", description=text,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    made = Options(prog=f"python3 -m rvelab.fenicsx {name}", description=text,
+                   formatter_class=argparse.RawDescriptionHelpFormatter)
     add = made.add_argument
     add("-o", "--output", type=Path, default=Path(name), metavar="FOLDER", help="default: the name of the case")
     add("--specimens", nargs="+", metavar="FILE", help="files, drawn for each point; default: packed by --recipe")
@@ -140,7 +162,7 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
         o.output.mkdir(parents=True, exist_ok=True)
     folder = o.output / (f"fields_from_{solver.t:.4g}" if o.resume else "fields")
     fields = Output(solver.material, folder) if o.frames else None
-    _print(first, f"{len(rows)} rows of the run before" if o.resume else "", "  ".join(f"{name:>12}" for name in names),
+    _print(first, f"{len(rows)} rows of the run before\n" if o.resume else "", "  ".join(f"{name:>12}" for name in names),
            "  iterations  residual  RVEs")
     try:
         for step in solver.march(o.to, o.first):
@@ -157,6 +179,11 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
                 save(solver, o.output / "checkpoint")
     except NotConverged as error:
         _print(first, f"stopped: {error}")
+    except KeyboardInterrupt:
+        kept = o.output / "checkpoint"
+        raise KeyboardInterrupt(f"stopped after t = {solver.t:.4g}; " + (
+            f"{kept} holds the last checkpoint, --resume goes on from it" if (kept / "host.npz").exists() else
+            "no checkpoint was made yet (--keep)")) from None
     if fields:
         fields.close()
     if o.keep and solver.history:

@@ -27,7 +27,7 @@ class Forms:
         self._fixed: list[tuple[np.ndarray, Any, np.ndarray | float]] = []
         self._pressures: list[tuple[np.ndarray, Any, Any]] = []  # (facets, value, constant)
         self._body, self._weight = None, None
-        self._ready, self.t = False, 0.0
+        self._ready, self._factored, self.t = False, False, 0.0
 
     def fix(self, where: Where, component: int, value: Any, at: str, profile: Any) -> None:
         if component not in range(self.material.d):
@@ -68,6 +68,12 @@ class Forms:
         if self.mesh.comm.allreduce(found) == 0:
             raise ValueError(f"`where` is true on no {what} of the boundary; a facet needs it at all its nodes and its "
                              "middle (compare coordinates by numpy.isclose)")
+
+    def shortest_edge(self) -> float:
+        """m, the least distance between two corners of a cell of the mesh. Collective."""
+        corners = compat.cell_corners(self.mesh, len(self.material.cells))
+        apart = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=3)
+        return self.mesh.comm.allreduce(float(np.min(apart[apart > 0], initial=np.inf)), MPI.MIN)
 
     def set_time(self, t: float) -> None:
         self.t = t
@@ -125,7 +131,7 @@ class Forms:
         self.solver.getPC().setType("lu")
         self.solver.getPC().setFactorSolverType("mumps")
         self.solution, self.right = self.matrix.createVecs()
-        self._ready = True
+        self._ready, self._factored = True, False
 
     def forces(self) -> tuple[np.ndarray, np.ndarray]:
         """Internal and external nodal forces of this rank's degrees of freedom, N."""
@@ -150,17 +156,22 @@ class Forms:
         return float(np.sqrt(self.mesh.comm.allreduce(float(values @ values), MPI.SUM)))
 
     def solve(self, residual: np.ndarray, target: np.ndarray) -> np.ndarray:
-        """-K^-1 residual with the present tangent, where fixed degrees of freedom move by `target`; with ghosts."""
-        self.matrix.zeroEntries()
-        dolfinx.fem.petsc.assemble_matrix(self.matrix, self.stiffness)
-        self.matrix.assemble()
+        """-K^-1 residual with the tangents that were last asked for, where fixed degrees of freedom move by `target`, which
+        is 0 if K is still that of the solution before; with ghosts."""
         fixed = self.fixed < self.owned
         blocks = self.space.dofmap.index_map.local_to_global((self.fixed[fixed] // self.blocks).astype(np.int32))
         rows = np.asarray(blocks) * self.blocks + self.fixed[fixed] % self.blocks
         self.solution.array[:], self.right.array[:] = 0, -residual
         self.solution.array[self.fixed[fixed]] = target[fixed]
-        self.matrix.zeroRowsColumns(rows.astype(PETSc.IntType), diag=1.0, x=self.solution, b=self.right)
-        self.solver.setOperators(self.matrix)
+        if self.material.renewed or not self._factored:
+            self.matrix.zeroEntries()
+            dolfinx.fem.petsc.assemble_matrix(self.matrix, self.stiffness)
+            self.matrix.assemble()
+            self.matrix.zeroRowsColumns(rows.astype(PETSc.IntType), diag=1.0, x=self.solution, b=self.right)
+            self.solver.setOperators(self.matrix)
+            self.material.renewed, self._factored = False, True
+        else:
+            self.right.array[self.fixed[fixed]] = 0
         self.solver.solve(self.right, self.solution)
         if self.solver.getConvergedReason() < 0:
             raise RuntimeError("the stiffness has no inverse: a part of the body is not held by its constraints")

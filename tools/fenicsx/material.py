@@ -76,6 +76,7 @@ class Material:
         group, family, sigma = members(mesh.comm, sources, sigma, d, options)
         share = tolerance if share is True else float(share)
         self.points = Points(mesh.comm, d, group, family, options, share, False, sigma)
+        self.renewed = False  # whether the tangents changed since the stiffness was assembled
         self.stiffening, self.C = stiffening, None
         self.average = Average(mesh, reference, self.dx, quadrature_degree, length) if length > 0 else None
         n = len(self.numbers)
@@ -96,25 +97,25 @@ class Material:
         """(n, d, d) of the committed displacement (0) or of its increment (1)."""
         return compat.evaluate(self._gradients[k], self.mesh, self.cells).reshape(-1, self.d, self.d)
 
-    def update(self) -> float:
-        """Collective. Trials with the increment du, and their stresses and tangents in the forms. 1; less: an RVE
-        refused, and this is the share of the increment to try."""
+    def update(self, tangent: bool = True) -> float:
+        """Collective. Trials with the increment du, and their stresses, and if asked for their tangents, in the forms. 1;
+        less: an RVE refused, and this is the share of the increment to try."""
         d, increment = self.d, self.gradient(1)
         if self.finite:
             self._new = np.eye(d) + self.gradient(0) + increment
             dH = self._new @ np.linalg.inv(self.F) - np.eye(d)
         else:
             dH = tensors.symmetric(increment)
-        found = self.points.trial(dH)
+        found = self.points.trial(dH, tangent)
         if found.scale < 1:
             return found.scale
         self.sigma, self.error = found.sigma, found.error
-        stress, tangent = found.sigma, found.stiffness
+        stress, stiffness = found.sigma, found.stiffness
         if self.average is not None:
-            stress, tangent = self._with_average(dH, stress, tangent)
+            stress, stiffness = self._with_average(dH, stress, stiffness)
         if self.finite:
-            stress, tangent = tensors.nominal(stress, tensors.current_tangent(tangent, stress), self._new)
-        self.set_values(stress, tangent)
+            stress, stiffness = tensors.nominal(stress, tensors.current_tangent(stiffness, stress), self._new)
+        self.set_values(stress, stiffness if tangent else None)
         return 1.0
 
     def _with_average(self, dH: np.ndarray, stress: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -146,13 +147,14 @@ class Material:
     def revert(self) -> None:
         """Stress and tangent of the committed state again."""
         self.points.revert()
-        self.du.x.array[:] = 0
+        self.du.x.array[:], self.renewed = 0, True
         self.sigma, self.error, self.stress.x.array[:], self.tangent.x.array[:] = self._kept
 
     def set_values(self, stress: np.ndarray, tangent: np.ndarray | None = None) -> None:
         d = self.d
         self.stress.x.array.reshape(-1, d * d)[self._dofs] = stress.reshape(-1, d * d)
         if tangent is not None:
+            self.renewed = True
             self.tangent.x.array.reshape(-1, d ** 4)[self._tangent_dofs] = tangent.reshape(-1, d ** 4)
 
     def with_errors(self, assemble: Callable[[], Any]) -> Any:

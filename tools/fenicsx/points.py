@@ -44,6 +44,7 @@ class Points:
         self.warned: dict[int, int] = {}
         self.work, self.counted = np.zeros(n), np.zeros(n)  # grain-steps of the last increments, and at their beginning
         self.total = 0.0  # grain-steps of all increments
+        self.away = False  # whether any point of any rank has its RVE elsewhere
         self.moved, self.spread = 0, []  # RVEs moved; per increment: work of the busiest rank over the mean
         self._pending = self.F
         if share == 0:
@@ -59,8 +60,9 @@ class Points:
             self.ids[k] = self.pool.clone(self.shared[self.group[k]].id)
             self.home[k], self.counted[k] = self.comm.rank, 0
 
-    def trial(self, dH: np.ndarray) -> Response:
-        """Collective. One trial of each point, dH (n, d, d) from the committed states."""
+    def trial(self, dH: np.ndarray, tangent: bool = True) -> Response:
+        """Collective. One trial of each point, dH (n, d, d) from the committed states. tangent: whether the stiffness is
+        asked for, which costs an RVE of 400 discs as much as some hundred steps; if not it is that of shared points, else 0."""
         n, d = len(dH), self.d
         total = self._pending = (np.eye(d) + dH) @ self.F
         found = Response(np.zeros((n, d, d)), np.zeros((n, d, d, d, d)), np.zeros(n), 1.0)
@@ -75,9 +77,11 @@ class Points:
         made = np.flatnonzero(self.made)
         gradients = np.zeros((len(made), 3, 3))
         gradients[:, :d, :d] = total[made] - np.eye(d)
-        sigma, tangent, error, scale = self._exchange("trial", made, gradients)
+        self._want = ["tangent", "error_estimate"] if tangent else ["error_estimate"]
+        sigma, found.error[made], scale, *stiffness = self._exchange("trial", made, gradients)
         found.sigma[made] = tensors.symmetric(sigma[:, :d, :d])
-        found.stiffness[made], found.error[made] = tensors.stiffness_of(tangent, d), error
+        if tangent:
+            found.stiffness[made] = tensors.stiffness_of(stiffness[0], d)
         refused = float(np.min(scale, initial=1.0))
         return found._replace(scale=min(self.comm.allgather(refused)))
 
@@ -120,7 +124,7 @@ class Points:
         for ids in comm.alltoall([self.ids[away & (self.home == rank)] for rank in range(comm.size)]):
             if len(ids):
                 self.pool.release(ids)
-        self.home[away], self.ids[away] = -1, 0
+        self.home[away], self.ids[away], self.away = -1, 0, False
         for k, snapshot in enumerate(snapshots):
             if snapshot is None:
                 if self.home[k] >= 0:
@@ -140,7 +144,7 @@ class Points:
     def _exchange(self, what: str, points: np.ndarray, given: np.ndarray) -> list[Any]:
         """Calls what(ids, given) on the rank that holds the RVE of each point, and brings its results back."""
         comm = self.comm
-        if comm.size == 1:
+        if not self.away:
             parts = [getattr(self, "_" + what)(self.ids[points], given)]
             order = np.arange(len(points))
         else:
@@ -158,7 +162,7 @@ class Points:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", rvelab.RvelabWarning)  # counted below
             try:
-                batch = self.pool.trial(ids, gradients, want=["tangent", "error_estimate"])
+                batch = self.pool.trial(ids, gradients, want=self._want)
             except rvelab.RvelabError as error:
                 batch = error.batch
                 if batch is None or not np.isin(batch.status[batch.status < 0], REFUSED).all():
@@ -169,7 +173,7 @@ class Points:
         for status in batch.status[batch.status > 0]:
             self.warned[int(status)] = self.warned.get(int(status), 0) + 1
         scale = np.where(batch.status < 0, np.clip(batch.dt_scale, 0.1, 0.5), 1.0)
-        return [batch.sigma, batch.tangent, batch.error_estimate, scale]
+        return [batch.sigma, batch.error_estimate, scale, *([batch.tangent] if "tangent" in self._want else [])]
 
     def _info(self, ids: np.ndarray, _: np.ndarray) -> list[np.ndarray]:
         infos = [self.pool.info(k) for k in ids]
@@ -191,19 +195,19 @@ class Points:
         self.total += self.work.sum()
         if comm.size == 1:
             return
-        listed = comm.allgather((self.home, self.work))
         load = np.zeros(comm.size)
-        for home, work in listed:
-            np.add.at(load, home[home >= 0], work[home >= 0])
+        np.add.at(load, self.home[self.made], self.work[self.made])
+        load = sum(comm.allgather(load))
         if load.sum() == 0:
             return
         self.spread.append(float(load.max() / load.mean()))
         if self.balances and self.spread[-1] > IMBALANCE:
-            self._move(plan(listed, load))
+            self._move(plan(comm.allgather((self.home, self.work)), load))
 
     def _move(self, moves: list[tuple[int, int, int]]) -> None:
         """(owner, point, new rank) for each RVE that moves, the same list on all ranks."""
         comm, sent = self.comm, [[] for _ in range(self.comm.size)]
+        self.away = self.away or bool(moves)
         asked = comm.alltoall([[(k, self.ids[k], to) for owner, k, to in moves if owner == comm.rank and
                                 self.home[k] == rank] for rank in range(comm.size)])
         for owner, each in enumerate(asked):

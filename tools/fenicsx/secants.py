@@ -38,5 +38,8 @@ class Secants:
         scale = np.sqrt(np.diag(products[:, :-1]))
         matrix, right = products[:, :-1] / np.outer(scale, scale), products[:, -1] / scale
         factors = np.linalg.lstsq(matrix, right, rcond=1e-8)[0] / scale
+        # The factors need few digits, since both answers have the same; without the others they are those of any number
+        # of ranks.
+        factors = np.rint(factors * 4096) / 4096
         move = -sum(factor * each for factor, each in zip(factors, self.moves))
         return move, residual - sum(factor * each for factor, each in zip(factors, self.changes))

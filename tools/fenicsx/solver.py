@@ -12,10 +12,18 @@ from .material import Material
 from .secants import Secants
 
 MOST_ITERATIONS, MOST_CUTS = 15, 2
+# Tangents of RVEs cost more than their increments. They are asked for in the first trial of an increment, and again after
+# an iteration that left more than this share of the out-of-balance forces; between them secants mend the stiffness.
+SLOW = 0.5
 GROW_BELOW, GROWTH = 5, 1.5  # an increment of at most so many iterations lets the next one be larger
 # Iterations that the RVEs cannot resolve end by their estimates, but not above so many tolerances: one RVE that collapses
 # has an estimate beyond all bounds.
 COARSEST = 5
+# Displacements are whole multiples of FINEST tolerances times the shortest edge of the mesh (a power of two, m). Strains
+# are then off by as much, stresses by that times the stiffness: a hundredth of the tolerance where it is a thousand
+# pressures. The round-off of linear solvers, which differs with the number of ranks, is far below, so that RVEs get the
+# same bits on any number of them. Without it grains magnify the round-off to another path.
+FINEST = 2.0 ** -17
 
 
 @dataclass
@@ -53,6 +61,7 @@ class Solver:
         self.forms = Forms(material)
         self.t, self.dt, self.history = 0.0, 0.0, []
         self._last, self._last_dt = None, 0.0  # displacement of the increment before, for the predictor
+        self._edge = self.forms.shortest_edge()
 
     def fix(self, where: Callable[[np.ndarray], np.ndarray], component: int, value: float | Callable[[float], float] = 0.0,
             at: str = "facets", profile: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
@@ -100,13 +109,13 @@ class Solver:
         """The increment, with its trials committed; or none, and the share of dt to try."""
         material, forms, start = self.material, self.forms, self.t
         forms.set_time(start + dt)
-        target = forms.targets()  # increments of the fixed degrees of freedom
+        target = self._targets = forms.targets()  # increments of the fixed degrees of freedom
+        self._grid = 2.0 ** np.floor(np.log2(FINEST * self.tolerance * self._edge))
         array = material.du.x.array
-        trials, iterations, residuals = 0, 0, []
+        trials, iterations, residuals, tangent = 0, 0, [], SLOW == 0
         secants = Secants(material.mesh.comm, forms.free)
         if self._last is not None:
-            array[:] = self._last * (dt / self._last_dt)
-            forms.set_fixed(array, target)
+            array[:] = self._rounded(self._last * (dt / self._last_dt))
             trials, share = 1, material.update()
             if share < 1:
                 return self._refuse(share)
@@ -123,10 +132,11 @@ class Solver:
                     return self._refuse(0.5)
             move, rest = secants.reduce(forms.out_of_balance)
             step = forms.solve(rest, target) + move
-            begin, before = array.copy(), forms.out_of_balance
-            norm, made, share = self._search(step, norm if predicted else np.inf)
+            begin, before, old = array.copy(), forms.out_of_balance, norm
+            norm, made, share = self._search(step, norm if predicted else np.inf, tangent or not predicted)
             if share < 1:
                 return self._refuse(share)
+            tangent = norm > SLOW * old
             if predicted:
                 secants.add(array - begin, forms.out_of_balance - before)
             iterations, trials, target, predicted = iterations + 1, trials + made, 0 * target, True
@@ -136,14 +146,14 @@ class Solver:
         return Increment(self.t, dt, iterations, trials, norm / reference, resolution,
                          norm > self.tolerance * reference, residuals, 0), 1.0
 
-    def _search(self, step: np.ndarray, norm: float) -> tuple[float, int, float]:
+    def _search(self, step: np.ndarray, norm: float, tangent: bool) -> tuple[float, int, float]:
         """Adds the step, or the part of it with the least out-of-balance forces where all of it increases them: their norm,
         trials made, and 1, or the share of the increment to try where every part is refused."""
         array, begin, part = self.material.du.x.array, self.material.du.x.array.copy(), 1.0
         best, best_part, trials = np.inf, 0.0, 0
         for _ in range(1 + MOST_CUTS):
-            array[:] = begin + part * step
-            share, trials, tried = self.material.update(), trials + 1, part
+            array[:] = self._rounded(begin + part * step)
+            share, trials, tried = self.material.update(tangent), trials + 1, part
             reached = self.forms.residual()[0] if share == 1 else np.inf
             if reached < best:
                 best, best_part = reached, part
@@ -155,10 +165,16 @@ class Solver:
         if best_part == 0:
             return np.inf, trials, 0.5
         if best_part != tried:
-            array[:] = begin + best_part * step
-            self.material.update()
+            array[:] = self._rounded(begin + best_part * step)
+            self.material.update(tangent)
             best, trials = self.forms.residual()[0], trials + 1
         return best, trials, 1.0
+
+    def _rounded(self, increment: np.ndarray) -> np.ndarray:
+        """Increments of the displacement on the grid, with those of fixed degrees of freedom exact."""
+        found = self._grid * np.rint(increment / self._grid)
+        self.forms.set_fixed(found, self._targets)
+        return found
 
     def _refuse(self, share: float) -> tuple[None, float]:
         self.material.revert()

@@ -243,6 +243,20 @@ class Increments:
         return parts
 
 
+    def beside(self):
+        """Processor time, s, of what a trial of the coupling takes beside its steps (simDEM.py: shear2D, then
+        getStressAndTangent2D): two scenes from their copies, stress and tangent, a copy."""
+        self.restored({"damping": 0.1, "time_step": 0.8, "warm": True})
+        scene, parts = O.sceneToString(), {}
+        for name, make in (("scene", lambda: O.stringToScene(scene)), ("copy", O.sceneToString),
+                           ("scene again", lambda: O.stringToScene(scene)),
+                           ("stress and tangent", lambda: getStressAndTangent(symmetry=True))):
+            begin = time.process_time()
+            make()
+            parts[name] = time.process_time() - begin
+        return parts
+
+
 def increments(base, job_path, out_path):
     with open(job_path, encoding="utf-8") as file:
         job = json.load(file)
@@ -252,6 +266,8 @@ def increments(base, job_path, out_path):
         state.restored({"damping": 0.3, "time_step": 0.8, "warm": True})
         of = {"start": stress(), "resolved": [state.resolved(increment, n) for n in job.get("resolved", [])],
               "points": [], "coupling": [state.coupling(increment) for _ in range(job.get("couplings", 0))]}
+        if job.get("tangent"):
+            of["beside"] = state.beside()
         for point in job["points"]:
             if "only" in point and point["only"] != len(found):
                 continue
