@@ -172,8 +172,8 @@ Json group_json(const Sheet& sheet, const std::string& name) {
       list.push_back(
           {again ? "" : number->label,
            density_in_words(*number) + (by_pressures(own) ? ", " + pressure_label(number->pressure) : std::string()),
-           value_in_words(*number), interval_of(*number), in_its_unit(*number, number->calculation_error),
-           published_of(*number)});
+           value_in_words(*number), interval_of(*number) + (number->remark.empty() ? "" : ": " + number->remark),
+           in_its_unit(*number, number->calculation_error), published_of(*number)});
     }
   }
   Json figures = Json::array();
@@ -247,15 +247,14 @@ Json figures_of(const models::Fit& fit, const Sheet& sheet) {
 }
 
 Json model_json(const models::Fit& fit, const Sheet& sheet) {
-  Table parameters{{"parameter", "value", "95 % interval", "meaning"}};
+  Table parameters{{"parameter", "value", "95 % interval", "origin", "meaning"}};
   for (const models::Parameter& each : fit.parameters) {
     const report::InUnit unit = report::fitting_unit(each.value, each.unit);
     const bool fitted = std::isfinite(each.low) && std::isfinite(each.high);
     parameters.push_back(
         {each.name, with_unit(report::in_three_digits(unit.factor * each.value), unit.unit),
-         fitted ? with_unit(report::interval_in_words(unit.factor * each.low, unit.factor * each.high), unit.unit)
-                : "not fitted",
-         each.meaning});
+         fitted ? with_unit(report::interval_in_words(unit.factor * each.low, unit.factor * each.high), unit.unit) : "",
+         models::name_of(each.origin), each.meaning});
   }
   Table misfits{{"test", "used for", "misfit of q (% of the largest)", "misfit of strain (%)", "remark"}};
   for (const models::Misfit& each : fit.misfits) {
