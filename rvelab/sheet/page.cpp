@@ -50,6 +50,9 @@ std::string interval_of(const Number& number) {
                         : report::interval_in_words(low, high),
                    unit.unit);
 }
+std::string interval_with_remark(const Number& number) {
+  return interval_of(number) + (number.remark.empty() ? "" : ": " + number.remark);
+}
 std::string published_of(const Number& number) {
   if (!std::isfinite(number.published)) return "";
   const std::string by = number.published_by.empty() ? "" : " (" + number.published_by + ")";
@@ -88,7 +91,7 @@ Json headline_of(const Sheet& sheet) {
     list.push_back({{"label", number->label},
                     {"where", where},
                     {"value", value_in_words(*number)},
-                    {"interval", interval_of(*number)},
+                    {"interval", interval_with_remark(*number)},
                     {"published", published_of(*number)},
                     {"definition", number->definition}});
   }
@@ -172,8 +175,8 @@ Json group_json(const Sheet& sheet, const std::string& name) {
       list.push_back(
           {again ? "" : number->label,
            density_in_words(*number) + (by_pressures(own) ? ", " + pressure_label(number->pressure) : std::string()),
-           value_in_words(*number), interval_of(*number) + (number->remark.empty() ? "" : ": " + number->remark),
-           in_its_unit(*number, number->calculation_error), published_of(*number)});
+           value_in_words(*number), interval_with_remark(*number), in_its_unit(*number, number->calculation_error),
+           published_of(*number)});
     }
   }
   Json figures = Json::array();

@@ -302,7 +302,8 @@ TEST_CASE(
 
 TEST_CASE("misfits on tests of specimens that were kept back stay what they were") {
   // Three specimens each of 250 grains of the recipe toyoura: the bounds are a tenth above what was found, to be
-  // noticed when a model gets worse. NorSand and hypoplasticity are fitted to both densities at once.
+  // noticed when a model gets worse. NorSand, with the exponent of G0 of the recipe, and hypoplasticity are fitted to
+  // both densities at once.
   struct Case {
     std::string model, density, test;
     double stress;
@@ -315,18 +316,18 @@ TEST_CASE("misfits on tests of specimens that were kept back stay what they were
                                 {"hardening_soil_small", "dense", "undrained_dense_200kPa", 0.02},
                                 {"hardening_soil_small", "loose", "drained_loose_400kPa", 0.093},
                                 {"hardening_soil_small", "loose", "undrained_loose_200kPa", 0.099},
-                                {"norsand", "_", "drained_dense_400kPa", 0.113},
-                                {"norsand", "_", "drained_loose_400kPa", 0.146},
-                                {"norsand", "_", "undrained_loose_200kPa", 0.174},
+                                {"norsand", "_", "drained_dense_400kPa", 0.1},
+                                {"norsand", "_", "drained_loose_400kPa", 0.066},
+                                {"norsand", "_", "undrained_loose_200kPa", 0.05},
                                 {"hypoplasticity", "_", "drained_dense_400kPa", 0.193},
                                 {"hypoplasticity", "_", "drained_loose_400kPa", 0.124},
-                                {"norsand", "_", "undrained_dense_200kPa", 1.8},
+                                {"norsand", "_", "undrained_dense_200kPa", 0.079},
                                 {"hypoplasticity", "_", "undrained_dense_200kPa", 0.041},
                                 {"hypoplasticity", "_", "undrained_loose_200kPa", 0.093}};
   std::map<std::string, Fit> fits;
   for (const Case& one : cases) {
     const std::string key = one.model + one.density;
-    if (!fits.contains(key)) fits[key] = fit(one.model, specimen(one.density), {});
+    if (!fits.contains(key)) fits[key] = fit(one.model, specimen(one.density), {{"G0_exponent", 0.364}});
     CAPTURE(one.model, one.test);
     bool found = false;
     for (const Misfit& misfit : fits[key].misfits) {
