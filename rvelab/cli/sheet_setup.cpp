@@ -1,8 +1,10 @@
 #include "rvelab/cli/sheet_setup.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
+#include <span>
 
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/program_path.hpp"
@@ -10,6 +12,7 @@
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/crc32c.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
@@ -91,15 +94,35 @@ void add_remarks(SheetSetup& setup) {
     setup.remarks.push_back("there is one density: how numbers depend on the density is not known");
 }
 
+std::uint32_t digest_of(const Clump& clump) {
+  std::uint32_t digest = 0;
+  for (const auto& member : clump.members) {
+    const std::array<double, 4> values{member.at[0], member.at[1], member.at[2], member.radius};
+    digest = io::crc32c(std::as_bytes(std::span(values)), digest);
+  }
+  return digest;
+}
+
 /// What a folder is made for, so that --resume goes on with nothing else.
 Json asked_for(const SheetSetup& setup) {
   Json asked{{"plan", setup.plan.resolved}, {"specimens", Json::array()}, {"protocols", Json::object()}};
   for (const SheetSpecimen& specimen : setup.specimens.all)
     asked["specimens"].push_back(setup.specimens.given ? Json(io::digest(io::read_specimen(specimen.file)))
                                                        : Json(specimen.recipe.resolved));
+  // Of a file that a recipe names it says the name alone.
+  for (const SheetSpecimen& specimen : setup.specimens.all)
+    for (const pack::GrainFraction& fraction : specimen.recipe.recipe.fractions)
+      if (fraction.clump && fraction.clump->name.ends_with(".csv"))
+        asked["files"][fraction.clump->name] = digest_of(*fraction.clump);
   for (const sheet::TestVariant& variant : setup.variants)
     asked["protocols"][variant.name + variant.suffix] = variant.protocol.resolved;
   return asked;
+}
+
+std::string names_in(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& each : object.items()) names.push_back(each.key());
+  return keys::listed(names);
 }
 
 /// InputError unless the folder is of this very sheet.
@@ -110,11 +133,13 @@ void expect_same(const std::string& file, const Json& asked) {
   } catch (const Json::exception&) {
     throw InputError(file + ": is damaged; allowed: what `rvelab sheet` wrote; start again with --force");
   }
-  for (const auto& [part, value] : asked.items())
-    if (!there.is_object() || !there.contains(part) || there[part] != value)
-      throw InputError(file + ": is of another sheet, whose " + part +
-                       " differ; allowed: the same plan, recipe or specimens, and settings; give them, or another "
-                       "folder, or start again with --force");
+  for (const auto& [part, value] : asked.items()) {
+    if (there.is_object() && there.contains(part) && there[part] == value) continue;
+    const std::string names = part == "files" ? " (" + names_in(value) + ")" : "";
+    throw InputError(file + ": is of another sheet, whose " + part + names +
+                     " differ; allowed: the same plan, recipe or specimens, and settings; give them, or another "
+                     "folder, or start again with --force");
+  }
 }
 
 /// With what was made of them, so that a sheet that stops is not taken for the old one.

@@ -157,6 +157,13 @@ void place_curve(Sheet& sheet, const MeasuredCurve& measured, const std::string&
   for (const fit::Curve& curve : curves) {
     if (curve.name == "deviator") deviator = &curve;
     if (curve.name == "p") pressure = &curve;
+    if (curve.name == "deviator" && measured.test.ends_with("drained") && !curve.all_y.empty() &&
+        curve.all_y.back() < 0) {
+      sheet.remarks.push_back("The measured test " + measured.name +
+                              " is not drawn: its deviator ends below 0, so that it is an extension, and the figures "
+                              "are of compressions.");
+      return;
+    }
     const Axes axes = axes_of(measured.test, curve);
     if (axes.x_factor == 0) continue;
     Series series = symbols_of(measured.name, curve.all_x, axes.x_factor, curve.all_y, axes.y_factor);

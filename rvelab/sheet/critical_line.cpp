@@ -86,6 +86,13 @@ double void_ratio_error(const EndState& end, const ensemble::CriticalLine& line)
   return std::abs(line.void_ratio(std::max(p - error, 0.01 * p)) - line.void_ratio(p));
 }
 
+/// A slope that may be none is no measured one; "": it is not 0.
+std::string why_unknown(const Number& slope) {
+  if (slope.low > 0) return "";
+  return std::isnan(slope.low) ? "not known to be above 0 from one specimen, so not for models"
+                               : "not known, the interval has 0 in it, so not for models";
+}
+
 /// The line of the means, which the figure and the state parameters take; none without enough states.
 ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
   Readings states;
@@ -101,24 +108,25 @@ ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
   }
   ensemble::CriticalLine line = line_through(states, LineForm::power);
   for (std::size_t k = 0; k < states.size(); ++k) states[k].error = void_ratio_error(*used[k], line);
-  const auto add = [&](const About& about, LineForm form, double ensemble::CriticalLine::*part) {
-    return add_number(
-        sheet, number_of(about, states, [form, part](const Readings& own) { return line_through(own, form).*part; }));
+  const auto number = [&](const About& about, LineForm form, double ensemble::CriticalLine::*part) {
+    return number_of(about, states, [form, part](const Readings& own) { return line_through(own, form).*part; });
   };
-  const double slope =
-      number_of(line_slope, states, [](const Readings& own) { return line_through(own, LineForm::power).lambda; }).mean;
-  if (!(slope > 0)) {
+  Number slope = number(line_slope, LineForm::power, &ensemble::CriticalLine::lambda);
+  const bool rises = std::isnan(slope.high) ? !(slope.mean > 0) : slope.high <= 0;
+  if (std::isnan(slope.mean) || rises) {
     sheet.remarks.push_back(
         "The critical state line and state parameters are left out: " +
-        (slope <= 0 ? "void ratios at the ends do not fall with the pressure, \u03bb is " + in_words(slope) + "."
-                    : std::string("no specimen has end states at two pressures, a factor of 1.2 apart (drained at "
-                                  "several pressures, or undrained, to 12 % of strain).")));
+        (slope.mean <= 0
+             ? "void ratios at the ends do not fall with the pressure, \u03bb is " + in_words(slope.mean) + "."
+             : std::string("no specimen has end states at two pressures, a factor of 1.2 apart (drained at "
+                           "several pressures, or undrained, to 12 % of strain).")));
     return {LineForm::power, unknown, unknown, unknown};
   }
-  add(line_void_ratio, LineForm::power, &ensemble::CriticalLine::Gamma);
+  slope.remark = why_unknown(slope);
+  line.lambda = slope.mean;
+  add_number(sheet, number(line_void_ratio, LineForm::power, &ensemble::CriticalLine::Gamma));
   line.Gamma = sheet.numbers.back().mean;
-  add(line_slope, LineForm::power, &ensemble::CriticalLine::lambda);
-  line.lambda = sheet.numbers.back().mean;
+  add_number(sheet, std::move(slope));
   Number xi = number_of(line_exponent, states);
   xi.mean = 0.7;
   xi.standard_error = xi.low = xi.high = xi.calculation_error = unknown;
@@ -129,8 +137,11 @@ ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
   scatter.mean = std::sqrt(squares / double(states.size()));
   scatter.standard_error = scatter.low = scatter.high = scatter.calculation_error = unknown;
   add_number(sheet, std::move(scatter));
-  add(log_void_ratio, LineForm::logarithmic, &ensemble::CriticalLine::Gamma);
-  add(log_slope, LineForm::logarithmic, &ensemble::CriticalLine::lambda);
+  Number log_line = number(log_void_ratio, LineForm::logarithmic, &ensemble::CriticalLine::Gamma);
+  Number log_fall = number(log_slope, LineForm::logarithmic, &ensemble::CriticalLine::lambda);
+  log_line.remark = log_fall.remark = why_unknown(log_fall);
+  add_number(sheet, std::move(log_line));
+  add_number(sheet, std::move(log_fall));
   if (!any_steady)
     sheet.remarks.push_back(
         "No test is steady at its end: the critical state line is that of the ends of the drained ones.");

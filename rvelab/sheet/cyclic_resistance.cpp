@@ -8,6 +8,7 @@
 // 1.5 times that number.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "rvelab/ensemble/measures.hpp"
 #include "rvelab/sheet/groups.hpp"
@@ -113,6 +114,12 @@ void add_cyclic_resistance(const std::vector<Test>& tests, Sheet& sheet) {
     sheet.remarks.push_back("The cyclic resistance is left out: there is no stress-controlled cyclic test.");
     return;
   }
+  std::map<std::size_t, std::string> without;  // densities
+  for (const Test& test : tests) without[test.density] = test.density_name;
+  for (const TestGroup& own : groups) without.erase(own.first().density);
+  for (const auto& [density, name] : without)
+    sheet.remarks.push_back("The cyclic resistance of " + name +
+                            " is left out: there is no stress-controlled cyclic test of it.");
   Figure figure{"cyclic_resistance",
                 "Cyclic resistance",
                 "cycles N",

@@ -25,7 +25,8 @@ namespace rvelab::sheet {
 std::vector<models::ElementTest> element_tests(const std::vector<Test>& tests, std::optional<std::size_t> density = {});
 
 /// Numbers by their keys: one of all densities and pressures by its key; others also by "KEY.DENSITY" and
-/// "KEY.DENSITY.PRESSUREkPa", where the key alone is their mean, of `density_name` where that is given.
+/// "KEY.DENSITY.PRESSUREkPa", where the key alone is their mean, of `density_name` where that is given. Those with a
+/// remark are left out.
 std::map<std::string, double> numbers_by_key(const Sheet& sheet, const std::string& density_name = "");
 
 }  // namespace rvelab::sheet

@@ -34,7 +34,7 @@ struct EndState {
   double friction_angle = unknown;  ///< degrees
   double angle_error = unknown;     ///< of calculation, degrees
   double pressure_error = unknown;  ///< of p, Pa
-  bool steady = false;              ///< the mean over seeds is: e of drained, p of undrained tests
+  bool steady = false;  ///< the mean over seeds is, or may be by its scatter: e of drained, p of undrained tests
 };
 inline constexpr double end_strain = 0.12;          ///< a test that does not come so far has no end state
 inline constexpr double steady_void_ratio = 0.003;  ///< most that e changes from one half of the window to the other

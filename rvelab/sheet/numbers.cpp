@@ -48,6 +48,7 @@ std::map<std::string, double> numbers_by_key(const Sheet& sheet, const std::stri
   std::map<std::string, double> found;
   std::map<std::string, std::pair<double, int>> sums;
   for (const Number& number : sheet.numbers) {
+    if (!number.remark.empty()) continue;
     const bool of_all = number.density_name.empty() && std::isnan(number.pressure);
     if (of_all) found[number.key] = number.mean;
     if (of_all) continue;

@@ -50,6 +50,9 @@ std::string interval_of(const Number& number) {
                         : report::interval_in_words(low, high),
                    unit.unit);
 }
+std::string interval_with_remark(const Number& number) {
+  return interval_of(number) + (number.remark.empty() ? "" : ": " + number.remark);
+}
 std::string published_of(const Number& number) {
   if (!std::isfinite(number.published)) return "";
   const std::string by = number.published_by.empty() ? "" : " (" + number.published_by + ")";
@@ -88,7 +91,7 @@ Json headline_of(const Sheet& sheet) {
     list.push_back({{"label", number->label},
                     {"where", where},
                     {"value", value_in_words(*number)},
-                    {"interval", interval_of(*number)},
+                    {"interval", interval_with_remark(*number)},
                     {"published", published_of(*number)},
                     {"definition", number->definition}});
   }
@@ -172,7 +175,7 @@ Json group_json(const Sheet& sheet, const std::string& name) {
       list.push_back(
           {again ? "" : number->label,
            density_in_words(*number) + (by_pressures(own) ? ", " + pressure_label(number->pressure) : std::string()),
-           value_in_words(*number), interval_of(*number), in_its_unit(*number, number->calculation_error),
+           value_in_words(*number), interval_with_remark(*number), in_its_unit(*number, number->calculation_error),
            published_of(*number)});
     }
   }
@@ -247,15 +250,14 @@ Json figures_of(const models::Fit& fit, const Sheet& sheet) {
 }
 
 Json model_json(const models::Fit& fit, const Sheet& sheet) {
-  Table parameters{{"parameter", "value", "95 % interval", "meaning"}};
+  Table parameters{{"parameter", "value", "95 % interval", "origin", "meaning"}};
   for (const models::Parameter& each : fit.parameters) {
     const report::InUnit unit = report::fitting_unit(each.value, each.unit);
     const bool fitted = std::isfinite(each.low) && std::isfinite(each.high);
     parameters.push_back(
         {each.name, with_unit(report::in_three_digits(unit.factor * each.value), unit.unit),
-         fitted ? with_unit(report::interval_in_words(unit.factor * each.low, unit.factor * each.high), unit.unit)
-                : "not fitted",
-         each.meaning});
+         fitted ? with_unit(report::interval_in_words(unit.factor * each.low, unit.factor * each.high), unit.unit) : "",
+         models::name_of(each.origin), each.meaning});
   }
   Table misfits{{"test", "used for", "misfit of q (% of the largest)", "misfit of strain (%)", "remark"}};
   for (const models::Misfit& each : fit.misfits) {

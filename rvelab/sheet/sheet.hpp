@@ -56,7 +56,8 @@ struct Number {
   std::string definition, source;        ///< one line each
   double published = unknown;            ///< --beside, or of the plan
   std::string published_by;
-  std::string group;  ///< heading on the page that it stands under: "Strength"
+  std::string group;   ///< heading on the page that it stands under: "Strength"
+  std::string remark;  ///< why the number is not to be used, and models do not take it; "": none
 };
 
 struct Series {

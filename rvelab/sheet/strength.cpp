@@ -15,6 +15,7 @@
 #include <set>
 
 #include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/sheet/groups.hpp"
 
@@ -239,24 +240,40 @@ Window window_of(const Test& test) {
   return window;
 }
 
+/// Half of the 95 % interval of the mean change of e over `seeds` tests, from their scatter around the means of all
+/// groups: 0 where each has one specimen. A test of few grains goes up and down at rest by more than it is from it.
+double doubt_of_change(const std::vector<std::vector<Window>>& groups, std::size_t seeds) {
+  double squares = 0, freedom = 0;
+  for (const auto& group : groups) {
+    double mean = 0;
+    for (const Window& window : group) mean += window.e_change / double(group.size());
+    for (const Window& window : group) squares += std::pow(window.e_change - mean, 2);
+    freedom += double(group.size()) - 1;
+  }
+  return freedom > 0 ? ensemble::students_t(freedom) * std::sqrt(squares / freedom / double(seeds)) : 0;
+}
+
 }  // namespace
 
 std::vector<EndState> end_states(const std::vector<Test>& tests) {
   std::vector<EndState> ends;
   for (const Purpose purpose : {Purpose::drained, Purpose::undrained}) {
+    std::vector<std::vector<Window>> groups;
     for (const TestGroup& own : groups_of(tests, purpose)) {
-      std::vector<Window> windows;
+      groups.emplace_back();
+      for (const Test* test : own.tests)
+        if (std::abs(last_records(*test).back().strain) >= end_strain * (1 - 1e-6))
+          groups.back().push_back(window_of(*test));
+      if (groups.back().empty()) groups.pop_back();
+    }
+    for (auto& group : groups) {
       double e_change = 0, p_change = 0;
-      for (const Test* test : own.tests) {
-        if (std::abs(last_records(*test).back().strain) < end_strain * (1 - 1e-6)) continue;
-        windows.push_back(window_of(*test));
-        e_change += windows.back().e_change;
-        p_change += windows.back().p_change;
-      }
-      const auto n = double(windows.size());
-      for (Window& window : windows) {
-        window.end.steady = purpose == Purpose::drained ? std::abs(e_change) <= n * steady_void_ratio
-                                                        : std::abs(p_change) <= n * steady_pressure;
+      const auto n = double(group.size());
+      for (const Window& window : group) e_change += window.e_change / n, p_change += window.p_change / n;
+      const double doubt = doubt_of_change(groups, group.size());
+      for (Window& window : group) {
+        window.end.steady = purpose == Purpose::drained ? std::abs(e_change) <= std::max(steady_void_ratio, doubt)
+                                                        : std::abs(p_change) <= steady_pressure;
         ends.push_back(window.end);
       }
     }

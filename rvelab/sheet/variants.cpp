@@ -55,17 +55,20 @@ void expect_purpose(const PlanTest& test, const protocol::Protocol& protocol) {
   const auto lateral_is = [&](CompressionStage::Lateral lateral) {
     return compression != nullptr && compression->lateral == lateral;
   };
+  const bool cycles = compression != nullptr && compression->cycles.count > 0;
   if (test.purpose == Purpose::drained && !lateral_is(CompressionStage::Lateral::constant_stress))
     refuse("a compression at constant lateral stress", "triaxial");
-  if (test.purpose == Purpose::drained && !(compression->to_strain > 0))
-    refuse("a compression, to_strain > 0", "triaxial");
+  if (test.purpose == Purpose::drained && (!(compression->to_strain > 0) || cycles))
+    refuse("a compression in one direction, to_strain > 0 without cycles", "triaxial");
   if (test.purpose == Purpose::oedometer && !is_oedometric(protocol.stages.back()))
     refuse("a stage that moves one axis alone", "oedometer_unloading");
   if (test.purpose == Purpose::undrained && !lateral_is(CompressionStage::Lateral::constant_volume))
     refuse("a compression at constant volume", "triaxial_undrained");
+  if (test.purpose == Purpose::undrained && (!(compression->to_strain > 0) || cycles))
+    refuse("a compression in one direction, to_strain > 0 without cycles", "triaxial_undrained");
   if (test.purpose == Purpose::undrained_shear &&
-      (shear == nullptr || shear->normal != SimpleShearStage::Normal::constant_volume))
-    refuse("simple shear at constant volume", "simple_shear_undrained");
+      (shear == nullptr || shear->normal != SimpleShearStage::Normal::constant_volume || shear->cycles.count > 0))
+    refuse("simple shear at constant volume, without cycles", "simple_shear_undrained");
   if (test.purpose == Purpose::isotropic &&
       std::none_of(protocol.stages.begin(), protocol.stages.end(),
                    [](const protocol::Stage& stage) { return stage.kind == "probe"; }))

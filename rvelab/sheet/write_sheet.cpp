@@ -47,6 +47,7 @@ Json as_json(const Number& number) {
           {"calculation_error", exact_number(number.calculation_error)},
           {"published", exact_number(number.published)},
           {"published_by", number.published_by.empty() ? Json() : Json(number.published_by)},
+          {"remark", number.remark},
           {"published_within_interval",
            judged ? Json(number.low <= number.published && number.published <= number.high) : Json()},
           {"tests", number.tests},
@@ -60,6 +61,7 @@ Json as_json(const models::Fit& fit) {
     parameters.push_back({{"name", each.name},
                           {"unit", each.unit},
                           {"meaning", each.meaning},
+                          {"origin", models::name_of(each.origin)},
                           {"value", exact_number(each.value)},
                           {"low_95", exact_number(each.low)},
                           {"high_95", exact_number(each.high)}});
@@ -89,7 +91,7 @@ std::string json_of_sheet(const Sheet& sheet, const std::vector<models::Fit>& fi
 std::string csv_of_sheet(const Sheet& sheet) {
   std::string text =
       "key,unit,density,relative_density,pressure_Pa,mean,standard_error,low_95,high_95,calculation_error,published,"
-      "published_by,label,tests,definition,source\n";
+      "published_by,label,tests,definition,source,remark\n";
   for (const Number& number : sheet.numbers) {
     for (const std::string& cell : {number.key, number.unit, number.density_name}) text += cell_of(cell) + ",";
     for (const double value : {number.relative_density, number.pressure, number.mean, number.standard_error, number.low,
@@ -97,7 +99,7 @@ std::string csv_of_sheet(const Sheet& sheet) {
       text += cell_of(value) + ",";
     for (const std::string& cell : {number.published_by, number.label, joined_names(number.tests), number.definition})
       text += cell_of(cell) + ",";
-    text += cell_of(number.source) + "\n";
+    text += cell_of(number.source) + "," + cell_of(number.remark) + "\n";
   }
   return text;
 }

@@ -165,6 +165,25 @@ TEST_CASE("A folder of another sheet, a plan or a recipe with a mistake are refu
   CHECK_FALSE(std::filesystem::exists(here / "B"));
 }
 
+TEST_CASE("A file of a clump that changed is noticed by --resume") {
+  const Workplace here;
+  here.write("plan.toml",
+             "[sheet]\nseeds = 1\nsettings = [\"pack.number=60\", \"grains.pairs.clump=pair.csv\"]\n"
+             "[[density]]\nname = \"dense\"\nsettings = [\"pack.seed=2\"]\n"
+             "[[test]]\nname = \"drained\"\npurpose = \"drained\"\nprotocol = \"triaxial\"\n"
+             "settings = [\"stage.compression.to_strain=0.01\"]\n");
+  const auto shape = [&](const char* y) { here.write("pair.csv", std::string("x,y,z,r\n0,0,0,1\n1,") + y + ",0,1\n"); };
+  const std::string command = "sheet pack_clumps --plan plan.toml -o A";
+  shape("0");
+  const Outcome outcome = here.run(command);
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  here.succeeds(command + " --resume");
+  shape("0.5");
+  here.refuses(command + " --resume", "is of another sheet, whose files (pair.csv) differ");
+  here.succeeds(command + " --force");
+}
+
 TEST_CASE("A density out of reach, and a disk that fills, are told; the sheet is of the other tests") {
   const Workplace here;
   here.write("plan.toml", plan);

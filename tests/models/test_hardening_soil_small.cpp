@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -93,6 +94,28 @@ TEST_CASE("Hardening Soil small loses stiffness by 1/(1 + 0.385 gamma/gamma_07)"
   const auto result = calculate(HardeningSoilSmall(given, false), test).test;
   const double gamma = 1.5e-5, secant = 1.2e8 / (1 + 0.385 * gamma / 1.5e-4);
   CHECK(result.q[1] - result.q[2] == Approx(2 * secant * gamma).epsilon(1e-3));
+}
+
+TEST_CASE("Hardening Soil is that of PLAXIS in triaxial tests on Berlin Sand III") {
+  // PLAXIS 2014, Hardening Soil Model, table 15.1, figures 15.4 (drained) and 15.5 (undrained), as read off in the
+  // tests of github.com/fkkarakurt/katai2d: sigma_3 = 200 kPa, c = 1 kPa. Without small strains. The cohesion is a
+  // shift of all stresses, and of p_ref, by c cot(phi).
+  const double phi = 38 * 0.017453292519943295, shift = 1e3 / std::tan(phi), p0 = 200e3 + shift;
+  const double E = 105e6 * std::pow(1e5 / (1e5 + shift), 0.55);
+  const HardeningSoilSmall law({38, 6, E, E, 3 * E, 0.55, 0.2, 0.38, 0.9, 0, 1e-4});
+  const auto drained = calculate(law, sheared("d", Loading::drained, p0, 0.6, 0.05, 100)).test;
+  double contraction = 0;
+  for (const double eps_v : drained.eps_v) contraction = std::max(contraction, eps_v);
+  CHECK(drained.q.back() == Approx(646e3).epsilon(3e-3));
+  CHECK(contraction == Approx(1e-3).margin(5e-4));
+  CHECK(drained.eps_v.back() < -2.5e-3);  // the bounds of those tests, around -0.005
+  CHECK(drained.eps_v.back() > -8e-3);
+  const auto undrained = calculate(law, sheared("u", Loading::undrained, p0, 0.6, 0.03, 100)).test;
+  double highest = 0;
+  const auto pore_pressure = [&](std::size_t k) { return p0 - (undrained.p[k] - undrained.q[k] / 3); };
+  for (std::size_t k = 0; k < undrained.q.size(); ++k) highest = std::max(highest, pore_pressure(k));
+  CHECK(highest == Approx(100e3).epsilon(0.3));
+  CHECK(pore_pressure(undrained.q.size() - 1) == Approx(-200e3).epsilon(0.3));
 }
 
 TEST_CASE("Hardening Soil small starts a drained test with G0") {

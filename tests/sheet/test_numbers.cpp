@@ -5,12 +5,14 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/ensemble/statistics.hpp"
+#include "rvelab/sheet/element_tests.hpp"
 #include "tests/catch.hpp"
 #include "tests/sheet/made_tests.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 using sheet::Number;
+using sheet::numbers_by_key;
 using sheet::numbers_of;
 using sheet::Sheet;
 
@@ -106,6 +108,44 @@ TEST_CASE("no critical state line goes through states at one pressure, or with v
   CHECK(!has(risen, "critical_line_e_G"));
   CHECK(!has(risen, "state_parameter"));
   CHECK(remarks(risen, "do not fall with the pressure"));
+}
+
+TEST_CASE("a slope of the critical state line that may be 0 is shown with a remark, and models do not take it") {
+  const auto line_of = [](double per_pascal) {  // the slopes of three seeds differ
+    std::vector<Test> tests = bolton_tests(3, 9.2, 3);
+    for (Test& test : tests)
+      for (records::Record& record : test.result.records)
+        record.void_ratio += per_pascal * (double(test.seed) - 2) * test.pressure;
+    return numbers_of(tests, "sand");
+  };
+  const Sheet known = line_of(1e-9), unknown = line_of(2e-7);
+  CHECK(the(known, "critical_line_lambda").remark.empty());
+  CHECK(numbers_by_key(known).contains("critical_line_Gamma"));
+  CHECK(the(unknown, "critical_line_lambda").mean == Approx(lambda).epsilon(1e-3));
+  CHECK(the(unknown, "critical_line_lambda").low < 0);
+  for (const char* key : {"critical_line_lambda", "critical_line_lambda_ln", "critical_line_Gamma"}) {
+    CHECK_THAT(the(unknown, key).remark, Catch::Matchers::Contains("the interval has 0 in it"));
+    CHECK(!numbers_by_key(unknown).contains(key));
+  }
+  CHECK(the(unknown, "critical_line_e_G").remark.empty());
+  CHECK(has(unknown, "state_parameter"));
+  CHECK_THAT(the(numbers_of(bolton_tests(3, 9.2, 1), "sand"), "critical_line_lambda").remark,
+             Catch::Matchers::Contains("from one specimen"));
+}
+
+TEST_CASE("ends whose void ratios go up and down from seed to seed are at rest, and such that all rise are not") {
+  const auto rising = [](double common, double own) {
+    std::vector<Test> tests = bolton_tests(3, 9.2, 3);
+    for (Test& test : tests)
+      for (records::Record& record : test.result.records)
+        record.void_ratio += (common + own * (double(test.seed) - 2)) * std::abs(record.strain);
+    return numbers_of(tests, "sand");
+  };
+  // From one half of the window to the other the strain grows by 0.025.
+  CHECK(!remarks(rising(0.1, 0), "critical"));
+  CHECK(remarks(rising(0.2, 0), "No drained test has reached a steady void ratio"));
+  CHECK(!remarks(rising(0.2, 1), "No drained test has reached a steady void ratio"));
+  CHECK(remarks(rising(2, 1), "No drained test has reached a steady void ratio"));
 }
 
 TEST_CASE("one specimen of each density is one, whatever their seeds") {

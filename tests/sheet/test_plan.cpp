@@ -136,6 +136,10 @@ TEST_CASE("Mistakes of a plan are named with their lines and a remedy") {
   CHECK_THAT(unfit("undrained_shear", "simple_shear_drained"), Contains("simple shear at constant volume"));
   CHECK_THAT(unfit("isotropic", "isotropic_compression"), Contains("probe"));
   CHECK_THAT(unfit("drained", "triaxial_extension"), Contains("to_strain > 0"));
+  const std::string extension = "settings = [\"stage.compression.to_strain=-0.1\"]\n";
+  CHECK_THAT(unfit("undrained", "triaxial_undrained", extension), Contains("in one direction, to_strain > 0"));
+  CHECK_THAT(unfit("undrained", "triaxial_cyclic"), Contains("without cycles"));
+  CHECK_THAT(unfit("undrained_shear", "cyclic_liquefaction"), Contains("without cycles"));
   CHECK_THAT(unfit("oedometer", "triaxial"), Contains("moves one axis alone"));
   CHECK_THAT(unfit("oedometer", "constant_p"), Contains("moves one axis alone"));
   CHECK(variants(two_densities + test_of("a", "oedometer", "oedometer"), 3).size() == 1);

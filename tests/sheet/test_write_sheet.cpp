@@ -129,7 +129,8 @@ TEST_CASE("the page has the critical angle first, no tag of a name, and curves w
 TEST_CASE("a model is drawn over the curve of its test, with its misfit by the side of what it was fitted to") {
   models::Fit fit;
   fit.model = "made";
-  fit.parameters = {{"phi", "degrees", "friction angle", 33, 32, 34}, {"nu", "", "Poisson's ratio", 0.2}};
+  fit.parameters = {{"phi", "degrees", "friction angle", 33, 32, 34},
+                    {"nu", "", "Poisson's ratio", 0.2, models::unknown, models::unknown, models::Origin::sheet}};
   fit.misfits = {{"drained, dense, 100 kPa", false, 0.05, 0.01, ""}};
   models::ElementTest calculated;
   calculated.name = "drained, dense, 100 kPa";
@@ -140,7 +141,8 @@ TEST_CASE("a model is drawn over the curve of its test, with its misfit by the s
   fit.calculated = {calculated};
   const auto model = data_of(page_of_sheet(made_sheet(), {fit}))["models"][0];
   CHECK(model["parameters"][1][2] == "32.0 to 34.0\u00b0");
-  CHECK(model["parameters"][2][2] == "not fitted");
+  CHECK(model["parameters"][2][2] == "");
+  CHECK(model["parameters"][2][3] == "sheet");
   CHECK(model["misfits"][1][1] == "prediction");
   const auto series = model["figures"][0]["series"];
   REQUIRE(series.size() == 2);
@@ -187,6 +189,17 @@ TEST_CASE("published numbers and measured curves stand beside those of the sheet
   CHECK(series[2].label == "P");
   const auto data = data_of(page_of_sheet(made, {}));
   CHECK(data["headline"][0]["published"] == "33.0\u00b0 (Li and Wang 1998): 2.00\u00b0 below it");
+}
+
+TEST_CASE("a measured extension is not drawn among compressions") {
+  const Folder folder;
+  std::ofstream(folder / "curve.csv") << "axial_strain_percent,deviator_kPa\n0,0\n1,-50\n2,-80\n5,-90\n";
+  std::ofstream(folder / "beside.toml") << "[[measured]]\nname = \"TE\"\ntest = \"drained\"\ncurve = \"curve.csv\"\n";
+  Sheet made = made_sheet();
+  add_measured(made, folder / "beside.toml");
+  CHECK(made.figures[0].series.size() == 1);
+  REQUIRE(made.remarks.size() == 1);
+  CHECK_THAT(made.remarks[0], Catch::Matchers::Contains("TE is not drawn") && Catch::Matchers::Contains("extension"));
 }
 
 TEST_CASE("a wrong file beside a sheet is refused with its line and the remedy") {

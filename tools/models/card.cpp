@@ -46,16 +46,19 @@ std::string other_name(const std::string& name) {
 
 std::string table(const Fit& fit) {
   TextStream text;
-  text << "# " << fit.model << "; low and high: 95 % interval, none: not fitted\n";
-  text << "# parameter, unit, value, low, high, meaning\n";
+  text << "# " << fit.model << "; low and high: 95 % interval of what was fitted\n";
+  for (const std::string& remark : fit.remarks) text << "# " << remark << '\n';
+  text << "# parameter, unit, value, low, high, origin, meaning\n";
   for (const Parameter& parameter : fit.parameters) {
     const bool stress = parameter.unit == "Pa";
     const double unit = stress ? 1e-3 : 1;
     const auto cell = [&](double value) { return std::isfinite(value) ? in_words(unit * value) : std::string(); };
     text << other_name(parameter.name) << ", " << (stress ? "kPa" : parameter.unit) << ", " << cell(parameter.value)
-         << ", " << cell(parameter.low) << ", " << cell(parameter.high) << ", " << parameter.meaning << '\n';
+         << ", " << cell(parameter.low) << ", " << cell(parameter.high) << ", " << name_of(parameter.origin) << ", "
+         << parameter.meaning << '\n';
   }
-  if (fit.model == "Hardening Soil small") text << "pref, kPa, 100, , , reference stress\nc', kPa, 0, , , cohesion\n";
+  if (fit.model == "Hardening Soil small")
+    text << "pref, kPa, 100, , , sheet, reference stress\nc', kPa, 0, , , assumed, cohesion\n";
   return text.str();
 }
 

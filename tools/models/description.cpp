@@ -12,8 +12,8 @@ bool has_number(const Numbers& numbers, const std::string& key) {
   return found != numbers.end() && std::isfinite(found->second);
 }
 
-std::string assumed_without(const Numbers& numbers, const std::string& key) {
-  return has_number(numbers, key) ? "" : ": assumed";
+Origin sheet_or(const Numbers& numbers, const std::string& key, Origin otherwise) {
+  return has_number(numbers, key) ? Origin::sheet : otherwise;
 }
 
 double number_or(const Numbers& numbers, const std::string& key, double otherwise) {

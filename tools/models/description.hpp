@@ -18,8 +18,10 @@ struct Entry {
   std::string name, unit, meaning;
   double value;      ///< first guess, or what it is
   double low, high;  ///< allowed
-  bool fitted;
+  Origin origin;
   bool logarithmic;  ///< searched by its logarithm
+
+  bool fitted() const { return origin == Origin::fitted; }
 };
 
 struct Description {
@@ -46,8 +48,8 @@ constexpr double p_ref = 1e5;  ///< Pa
 /// The number of that key, else `otherwise`.
 double number_or(const Numbers& numbers, const std::string& key, double otherwise);
 bool has_number(const Numbers& numbers, const std::string& key);
-/// ": assumed" where there is no such number; end of a meaning.
-std::string assumed_without(const Numbers& numbers, const std::string& key);
+/// Origin::sheet where there is such a number.
+Origin sheet_or(const Numbers& numbers, const std::string& key, Origin otherwise);
 
 Tests of_loading(const Tests& tests, Loading loading);
 /// Drained and undrained ones.

@@ -34,7 +34,7 @@ class Search {
  public:
   Search(const Description& model, std::vector<Entry> entries) : model(model), entries(std::move(entries)) {
     for (std::size_t k = 0; k < this->entries.size(); ++k)
-      if (this->entries[k].fitted) fitted.push_back(k);
+      if (this->entries[k].fitted()) fitted.push_back(k);
   }
 
   Eigen::VectorXd start() const {
@@ -179,7 +179,7 @@ void set_intervals(const Residuals& residuals, const Eigen::VectorXd& z, Fit& fi
     const double high = entry.logarithmic ? parameter.value * std::exp(half) : parameter.value + half;
     parameter.low = std::max(low, entry.low);
     parameter.high = std::min(high, entry.high);
-    const double ends = entry.logarithmic ? 1e-3 * parameter.value : 1e-3 * (entry.high - entry.low);
+    const double ends = entry.logarithmic ? 0.02 * parameter.value : 1e-3 * (entry.high - entry.low);
     if (parameter.value < entry.low + ends || parameter.value > entry.high - ends)
       fit.remarks.push_back(parameter.name + " ends at the limit of what is tried, " + in_words(parameter.value) +
                             ": the tests do not determine it, or the model does not describe them");
@@ -197,11 +197,11 @@ std::string with_unit(const Entry& entry, double value) {
 std::vector<Entry> within_limits(std::vector<Entry> entries, Fit& fit) {
   for (Entry& entry : entries) {
     if (std::isnan(entry.value)) continue;  // it follows from others
-    if (!entry.fitted && (entry.value < entry.low || entry.value > entry.high)) {
+    if (!entry.fitted() && (entry.value < entry.low || entry.value > entry.high)) {
       fit.remarks.push_back(entry.name + " of the sheet, " + with_unit(entry, entry.value) +
                             ", is not among what the model takes, " + in_words(entry.low) + " to " +
                             in_words(entry.high) + ": it is fitted");
-      entry.fitted = true;
+      entry.origin = Origin::fitted;
       entry.value = entry.logarithmic ? std::sqrt(entry.low * entry.high) : 0.5 * (entry.low + entry.high);
     }
     entry.value = std::clamp(entry.value, entry.low, entry.high);
@@ -212,10 +212,18 @@ std::vector<Entry> within_limits(std::vector<Entry> entries, Fit& fit) {
 /// Where other parameters did not leave a number of the sheet as it was.
 void remark_changes(const std::vector<Entry>& entries, const std::vector<double>& values, Fit& fit) {
   for (std::size_t k = 0; k < entries.size(); ++k)
-    if (!entries[k].fitted && std::abs(values[k] - entries[k].value) > 1e-9 * std::abs(entries[k].value))
+    if (entries[k].origin == Origin::sheet &&
+        std::abs(values[k] - entries[k].value) > 1e-9 * std::abs(entries[k].value))
       fit.remarks.push_back(entries[k].name + " of the sheet, " + with_unit(entries[k], entries[k].value) +
                             ", does not go with the other parameters: " + with_unit(entries[k], values[k]) +
                             " is used");
+}
+
+void remark_assumed(Fit& fit) {
+  std::string names;
+  for (const Parameter& each : fit.parameters)
+    if (each.origin == Origin::assumed) names += (names.empty() ? "" : ", ") + each.name;
+  if (!names.empty()) fit.remarks.push_back("assumed, since neither tests nor sheet tell: " + names);
 }
 
 std::string counted(const Tests& tests) {
@@ -242,6 +250,11 @@ void remark_density_and_rise(const Tests& tests, Fit& fit) {
 }
 
 }  // namespace
+
+const char* name_of(Origin origin) {
+  static const char* const names[] = {"fitted", "sheet", "assumed"};
+  return names[int(origin)];
+}
 
 const std::vector<std::string>& names() {
   static const std::vector<std::string> list = [] {
@@ -281,10 +294,11 @@ Fit fit(std::string_view model, const std::vector<ElementTest>& tests, const std
   const std::vector<double> values = search.values(z);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const Entry& entry = search.parameters()[k];
-    result.parameters.push_back({entry.name, entry.unit, entry.meaning, values[k], unknown, unknown});
+    result.parameters.push_back({entry.name, entry.unit, entry.meaning, values[k], unknown, unknown, entry.origin});
   }
   set_intervals(residuals, z, result);
   remark_changes(search.parameters(), values, result);
+  remark_assumed(result);
   if (description.warning)
     if (const std::string warning = description.warning(values); !warning.empty()) result.remarks.push_back(warning);
   if (!description.softens) remark_density_and_rise(clean, result);

@@ -37,30 +37,29 @@ std::vector<Entry> parameters_of_hardening_soil(const Tests& tests, const Number
   const double Eoed = number_or(numbers, "Eoed_ref_Pa", oedometer_modulus(tests, m));
   const double Eur = number_or(numbers, "Eur_ref_Pa", 3 * E50);
   const double G0 = number_or(numbers, "G0_ref_Pa", 0.8 * Eur);
-  const bool cyclic = !of_loading(tests, Loading::cyclic_shear).empty();
-  const auto guessed_without = [&](const char* key, const std::string& meaning) {
-    return meaning + (cyclic || has_number(numbers, key) ? "" : ": a guess, no test has small strains");
-  };
+  constexpr Origin fitted = Origin::fitted;
+  // Small strains: without a test of them nothing tells what a sheet does not.
+  const Origin small = of_loading(tests, Loading::cyclic_shear).empty() ? Origin::assumed : fitted;
   return {
-      {"phi", "deg", "friction angle", phi, 15, 65, true, false},
-      {"psi", "deg", "dilation angle", std::max(1.0, 0.3 * phi), -15, 40, true, false},
-      {"E50_ref", "Pa", "secant stiffness at half of the strength, 100 kPa", E50, 1e5, 1e10, true, true},
-      {"Eoed_ref", "Pa", "oedometer stiffness of first loading, 100 kPa", Eoed, 1e5, 1e10, true, true},
+      {"phi", "deg", "friction angle", phi, 15, 65, fitted, false},
+      {"psi", "deg", "dilation angle", std::max(1.0, 0.3 * phi), -15, 40, fitted, false},
+      {"E50_ref", "Pa", "secant stiffness at half of the strength, 100 kPa", E50, 1e5, 1e10, fitted, true},
+      {"Eoed_ref", "Pa", "oedometer stiffness of first loading, 100 kPa", Eoed, 1e5, 1e10, fitted, true},
       {"Eur_ref", "Pa", "stiffness of unloading and reloading, 100 kPa", Eur, 2e5, 1e11,
-       !has_number(numbers, "Eur_ref_Pa"), true},
-      {"m", "", "exponent of stiffness over stress", m, 0.01, 1, !has_number(numbers, "exponent_m"), false},
-      {"nu_ur", "", "Poisson's ratio of unloading and reloading" + assumed_without(numbers, "nu_ur"),
-       number_or(numbers, "nu_ur", 0.2), 0, 0.5, false, false},
+       sheet_or(numbers, "Eur_ref_Pa", fitted), true},
+      {"m", "", "exponent of stiffness over stress", m, 0.01, 1, sheet_or(numbers, "exponent_m", fitted), false},
+      {"nu_ur", "", "Poisson's ratio of unloading and reloading", number_or(numbers, "nu_ur", 0.2), 0, 0.5,
+       sheet_or(numbers, "nu_ur", Origin::assumed), false},
       {"K0nc", "",
        has_number(numbers, "K0nc") ? "sigma_3/sigma_1 of first oedometric loading"
                                    : "sigma_3/sigma_1 of first oedometric loading: 1 - sin phi (Jaky 1948)",
-       number_or(numbers, "K0nc", unknown), 0.1, 0.9, false, false},
-      {"R_f", "", "strength over the asymptote of the hyperbola", number_or(numbers, "R_f", 0.85), 0.4, 0.995, true,
+       number_or(numbers, "K0nc", unknown), 0.1, 0.9, sheet_or(numbers, "K0nc", Origin::assumed), false},
+      {"R_f", "", "strength over the asymptote of the hyperbola", number_or(numbers, "R_f", 0.85), 0.4, 0.995, fitted,
        false},
-      {"G0_ref", "Pa", guessed_without("G0_ref_Pa", "shear stiffness at smallest strain, 100 kPa"), G0, 1e5, 1e11,
-       !has_number(numbers, "G0_ref_Pa"), true},
-      {"gamma_07", "", guessed_without("gamma_07", "shear strain at which G is 0.722 G0"),
-       number_or(numbers, "gamma_07", 1e-4), 1e-7, 1e-2, cyclic || !has_number(numbers, "gamma_07"), true},
+      {"G0_ref", "Pa", "shear stiffness at smallest strain, 100 kPa", G0, 1e5, 1e11,
+       sheet_or(numbers, "G0_ref_Pa", small), true},
+      {"gamma_07", "", "shear strain at which G is 0.722 G0", number_or(numbers, "gamma_07", 1e-4), 1e-7, 1e-2,
+       small == fitted ? fitted : sheet_or(numbers, "gamma_07", small), true},
   };
 }
 

@@ -20,8 +20,7 @@ std::string missing_of_hypoplasticity(const Tests& tests) {
 }
 
 std::vector<Entry> parameters_of_hypoplasticity(const Tests& tests, const Numbers& numbers) {
-  const bool angle = has_number(numbers, "phi_cs_deg"), line = has_number(numbers, "critical_line_e_G");
-  const bool largest = has_number(numbers, "e_i0"), smallest = has_number(numbers, "e_d0");
+  constexpr Origin fitted = Origin::fitted;
   const double M = stress_ratio_at_the_end(tests);
   double e_c0 = 0, densest = 1e9;
   for (const ElementTest& test : shear_tests(tests)) {
@@ -30,17 +29,18 @@ std::vector<Entry> parameters_of_hypoplasticity(const Tests& tests, const Number
   }
   e_c0 = number_or(numbers, "critical_line_e_G", e_c0);
   return {
-      {"phi_c", "deg", "critical friction angle",
-       angle ? numbers.at("phi_cs_deg") : std::asin(3 * M / (6 + M)) / degree, 10, 50, !angle, false},
-      {"h_s", "Pa", "granulate hardness", 2e9, 1e6, 1e13, true, true},
-      {"n", "", "exponent of compression", 0.35, 0.05, 0.9, true, false},
+      {"phi_c", "deg", "critical friction angle", number_or(numbers, "phi_cs_deg", std::asin(3 * M / (6 + M)) / degree),
+       10, 50, sheet_or(numbers, "phi_cs_deg", fitted), false},
+      {"h_s", "Pa", "granulate hardness", 2e9, 1e6, 1e13, fitted, true},
+      {"n", "", "exponent of compression", 0.35, 0.05, 0.9, fitted, false},
       {"e_d0", "", "smallest void ratio at p = 0", number_or(numbers, "e_d0", std::min(0.6 * e_c0, 0.9 * densest)),
-       0.05, densest, !smallest, false},
-      {"e_c0", "", "critical void ratio at p = 0", e_c0, 0.1, 3, !line, false},
-      {"e_i0", "", largest ? "largest void ratio at p = 0" : "largest void ratio at p = 0: 1.15 e_c0",
-       number_or(numbers, "e_i0", unknown), 0.1, 4, false, false},
-      {"alpha", "", "exponent of density in the strength", 0.15, 0.005, 0.8, true, true},
-      {"beta", "", "exponent of density in the stiffness", 1.3, 0.1, 8, true, true},
+       0.05, densest, sheet_or(numbers, "e_d0", fitted), false},
+      {"e_c0", "", "critical void ratio at p = 0", e_c0, 0.1, 3, sheet_or(numbers, "critical_line_e_G", fitted), false},
+      {"e_i0", "",
+       has_number(numbers, "e_i0") ? "largest void ratio at p = 0" : "largest void ratio at p = 0: 1.15 e_c0",
+       number_or(numbers, "e_i0", unknown), 0.1, 4, sheet_or(numbers, "e_i0", Origin::assumed), false},
+      {"alpha", "", "exponent of density in the strength", 0.15, 0.005, 0.8, fitted, true},
+      {"beta", "", "exponent of density in the stiffness", 1.3, 0.1, 8, fitted, true},
   };
 }
 

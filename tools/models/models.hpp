@@ -27,10 +27,17 @@ struct ElementTest {
   bool fitted = true;               ///< false: it is kept back, and predicted
 };
 
+/// Where the value of a parameter comes from: the fit, a number of the data sheet, or neither: a usual value, or a
+/// relation to other parameters.
+enum class Origin { fitted, sheet, assumed };
+/// "fitted", "sheet", "assumed".
+const char* name_of(Origin origin);
+
 struct Parameter {
   std::string name, unit, meaning;
   double value = unknown;
-  double low = unknown, high = unknown;  ///< 95 % interval; NaN: not fitted (of the sheet, or assumed)
+  double low = unknown, high = unknown;  ///< 95 % interval; NaN: not fitted
+  Origin origin = Origin::fitted;
 };
 
 /// How well a model stands for one test.

@@ -22,10 +22,10 @@ std::string missing_of_mohr_coulomb(const Tests& tests) {
 std::vector<Entry> parameters_of_mohr_coulomb(const Tests& tests, const Numbers&) {
   const double phi = largest_friction_angle_deg(tests);
   return {
-      {"phi", "deg", "friction angle", phi, 5, 65, true, false},
-      {"psi", "deg", "dilation angle", 0.3 * phi, -25, 45, true, false},
-      {"E", "Pa", "Young's modulus", secant_modulus(tests).at_100_kPa, 1e5, 1e11, true, true},
-      {"nu", "", "Poisson's ratio", 0.25, 0.01, 0.48, true, false},
+      {"phi", "deg", "friction angle", phi, 5, 65, Origin::fitted, false},
+      {"psi", "deg", "dilation angle", 0.3 * phi, -25, 45, Origin::fitted, false},
+      {"E", "Pa", "Young's modulus", secant_modulus(tests).at_100_kPa, 1e5, 1e11, Origin::fitted, true},
+      {"nu", "", "Poisson's ratio", 0.25, 0.01, 0.48, Origin::fitted, false},
   };
 }
 

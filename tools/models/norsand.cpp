@@ -11,17 +11,27 @@ namespace {
 
 constexpr double kPa = 1e3;
 
-/// Critical state line of the sheet over ln p; of a curved one, e = e_G - lambda (p/p_a)^xi, the chord between the
-/// lowest and highest mean stress of the tests.
 struct StraightLine {
   double Gamma, lambda;
 };
+struct Line {
+  StraightLine value;
+  Origin origin;
+};
 
-StraightLine straight_line(const Tests& tests, const Numbers& numbers) {
-  if (has_number(numbers, "critical_line_Gamma") && has_number(numbers, "critical_line_lambda_ln"))
-    return {numbers.at("critical_line_Gamma"), numbers.at("critical_line_lambda_ln")};
-  if (has_number(numbers, "critical_line_e_G") && has_number(numbers, "critical_line_lambda") &&
-      has_number(numbers, "critical_line_xi")) {
+/// Through void ratios at two pressures.
+StraightLine chord(double low, double e_low, double high, double e_high) {
+  const double lambda = (e_low - e_high) / std::log(high / low);
+  return {e_low + lambda * std::log(low / kPa), lambda};
+}
+
+/// Critical state line of the sheet over ln p; of a curved one, e = e_G - lambda (p/p_a)^xi, the chord between the
+/// lowest and highest mean stress of the tests. Without one it is fitted, from the ends of the tests.
+Line line_of(const Tests& tests, const Numbers& numbers) {
+  const auto all = [&](const auto&... keys) { return (has_number(numbers, keys) && ...); };
+  if (all("critical_line_Gamma", "critical_line_lambda_ln"))
+    return {{numbers.at("critical_line_Gamma"), numbers.at("critical_line_lambda_ln")}, Origin::sheet};
+  if (all("critical_line_e_G", "critical_line_lambda", "critical_line_xi")) {
     double low = 1e300, high = 0;
     for (const ElementTest& test : shear_tests(tests)) {
       low = std::min(low, test.p0);
@@ -31,10 +41,8 @@ StraightLine straight_line(const Tests& tests, const Numbers& numbers) {
       return numbers.at("critical_line_e_G") -
              numbers.at("critical_line_lambda") * std::pow(p / 101325, numbers.at("critical_line_xi"));
     };
-    const double lambda = (e_c(low) - e_c(high)) / std::log(high / low);
-    return {e_c(low) + lambda * std::log(low / kPa), lambda};
+    return {chord(low, e_c(low), high, e_c(high)), Origin::sheet};
   }
-  // Ends of the tests: a straight line through them.
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const ElementTest& test : shear_tests(tests)) {
     const double u = std::log(test.p.back() / kPa), v = void_ratio_at_the_end(test);
@@ -42,7 +50,7 @@ StraightLine straight_line(const Tests& tests, const Numbers& numbers) {
   }
   const double spread = xx - x * x / n;
   const double lambda = spread > 0.1 ? std::clamp(-(xy - x * y / n) / spread, 0.005, 0.1) : 0.02;
-  return {y / n + lambda * x / n, lambda};
+  return {{y / n + lambda * x / n, lambda}, Origin::fitted};
 }
 
 std::string missing_of_norsand(const Tests& tests) {
@@ -58,26 +66,31 @@ std::string missing_of_norsand(const Tests& tests) {
 }
 
 std::vector<Entry> parameters_of_norsand(const Tests& tests, const Numbers& numbers) {
-  const StraightLine line = straight_line(tests, numbers);
-  const bool measured = has_number(numbers, "critical_line_Gamma") || has_number(numbers, "critical_line_e_G");
-  const bool angle = has_number(numbers, "phi_cs_deg");
+  constexpr Origin fitted = Origin::fitted;
+  const Line line = line_of(tests, numbers);
   const double s = std::sin(number_or(numbers, "phi_cs_deg", 31) * degree);
-  const double M = angle ? 6 * s / (3 - s) : stress_ratio_at_the_end(tests);
+  const double M = has_number(numbers, "phi_cs_deg") ? 6 * s / (3 - s) : stress_ratio_at_the_end(tests);
   return {
-      {"Gamma", "", "critical void ratio at 1 kPa", line.Gamma, 0.1, 3, !measured, false},
-      {"lambda", "", "slope of the critical state line over ln p", line.lambda, 1e-4, 0.3, !measured, true},
-      {"M_tc", "", "critical q/p in triaxial compression", M, 0.5, 2.2, !angle, false},
-      {"N", "", "volumetric coupling", 0.3, 0, 0.9, true, false},
-      {"chi", "", "largest dilation over the state parameter", 3.5, 0.5, 15, true, true},
-      {"H", "", "plastic hardening", 150, 2, 20000, true, true},
-      {"I_r", "", "shear stiffness over the mean stress", 500, 20, 20000, true, true},
-      {"nu", "", "Poisson's ratio" + assumed_without(numbers, "nu_ur"), number_or(numbers, "nu_ur", 0.2), 0, 0.5, false,
-       false},
+      {"Gamma", "", "critical void ratio at 1 kPa", line.value.Gamma, 0.1, 3, line.origin, false},
+      {"lambda", "",
+       line.origin == Origin::sheet
+           ? "slope of the critical state line over ln p"
+           : "slope of the critical state line over ln p, of which the sheet has no measured one",
+       line.value.lambda, 1e-4, 0.3, line.origin, true},
+      {"M_tc", "", "critical q/p in triaxial compression", M, 0.5, 2.2, sheet_or(numbers, "phi_cs_deg", fitted), false},
+      {"N", "", "volumetric coupling", 0.3, 0, 0.9, fitted, false},
+      {"chi", "", "largest dilation over the state parameter", 3.5, 0.5, 15, fitted, true},
+      {"H", "", "plastic hardening", 150, 2, 20000, fitted, true},
+      {"I_r", "", "shear stiffness over the mean stress, at 100 kPa", 500, 20, 20000, fitted, true},
+      {"nu", "", "Poisson's ratio", number_or(numbers, "nu_ur", 0.2), 0, 0.5,
+       sheet_or(numbers, "nu_ur", Origin::assumed), false},
+      {"n", "", "exponent of the shear stiffness over stress", number_or(numbers, "G0_exponent", 1), 0, 1,
+       sheet_or(numbers, "G0_exponent", Origin::assumed), false},
   };
 }
 
 std::unique_ptr<Law> law_of_norsand(const std::vector<double>& v) {
-  return std::make_unique<NorSand>(NorSandParameters{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]});
+  return std::make_unique<NorSand>(NorSandParameters{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]});
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 //   hardening       d p_i/p_i = H (M_i/M_itc) (p/p_i)^2 (exp(-chi_i psi_i/M_itc) - p_i/p) d eps_q,
 //                   M_itc = M_tc - N chi_i |psi_i|; at constant volume also, for the softening of the inner cap,
 //                   - (eta/eta_L) D (K/p) d eps_q/(1 + chi_i lambda/M_tc), eta_L = M_i (1 - chi_i psi_i/M_itc)
-//   elasticity      G = I_r p, Poisson's ratio nu
+//   elasticity      G = I_r p_ref (p/p_ref)^n, p_ref = 100 kPa, Poisson's ratio nu (n = 1: G = I_r p)
 //
 // Not calculated: the inner cap itself in unloading (which is elastic until the stress ratio yields on the other side).
 #pragma once
@@ -23,7 +23,7 @@ namespace rvelab::models {
 struct NorSandParameters {
   double Gamma, lambda;  ///< lambda of the natural logarithm
   double M_tc, N, chi, H, I_r, nu;
-  double elastic_exponent = 1;  ///< G = I_r 100 kPa (p/100 kPa)^exponent
+  double elastic_exponent = 1;  ///< n
 };
 
 class NorSand : public Law {
