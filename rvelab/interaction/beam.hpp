@@ -42,7 +42,7 @@ static inline __attribute__((always_inline)) void book_release(const Interaction
 }
 
 template <class Criterion>
-struct Beam : Bond<Beam<Criterion>> {
+struct Beam : BondLaw<Beam<Criterion>> {
   static constexpr const char* name = Criterion::name;  ///< group of files
   static constexpr InteractionField fields[] = {
       {"length_m", "m", positive_number},                   // l0

@@ -13,7 +13,7 @@
 
 namespace rvelab {
 
-struct ContactBond : Bond<ContactBond> {
+struct ContactBond : BondLaw<ContactBond> {
   static constexpr const char* name = "contact_bonds";
   static constexpr InteractionField fields[] = {
       {"gap_m", "m", any_number},                         // g0

@@ -136,7 +136,7 @@ struct SpaceForces {
 
 /// What bonds have in common: broken ones act no more and are kept, since where they broke is a result.
 template <class Law>
-struct Bond {
+struct BondLaw {
   static constexpr Family family = Family::bonds;
   template <class Columns>
   static bool kept(const Columns&) {

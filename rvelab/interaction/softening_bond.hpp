@@ -14,7 +14,7 @@
 
 namespace rvelab {
 
-struct SofteningBond : Bond<SofteningBond> {
+struct SofteningBond : BondLaw<SofteningBond> {
   static constexpr const char* name = "softening_bonds";
   static constexpr InteractionField fields[] = {
       {"gap_m", "m", any_number},                           // when it was made
