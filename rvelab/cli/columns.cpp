@@ -6,11 +6,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
-
 namespace {
 
 /// Letters of a UTF-8 text.
@@ -53,12 +51,6 @@ std::string csv_cell(const std::string& text) {
 }
 
 std::string csv_cell(double value) { return std::isfinite(value) ? io::exact(value) : ""; }
-
-std::string in_digits_of(double value, double error) {
-  const std::string text = ensemble::with_error(value, error);
-  if (!text.starts_with('(')) return text.substr(0, text.find(" +-"));
-  return text.substr(1, text.find(" +-") - 1) + text.substr(text.find(')') + 1);
-}
 
 namespace {
 

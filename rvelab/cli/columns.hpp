@@ -15,9 +15,6 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size
 std::string csv_cell(const std::string& text);
 std::string csv_cell(double value);
 
-/// A value with the digits that its error, or half of its interval, allows (ensemble::with_error).
-std::string in_digits_of(double value, double error);
-
 /// So many significant digits, without zeros at the end: 0.1874, 83682, 100e3, 35.25e6; "-" for NaN.
 std::string in_digits(double value, int digits);
 

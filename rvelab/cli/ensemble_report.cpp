@@ -22,7 +22,7 @@ std::string at_pressure(double pressure) {
 std::string interval(double low, double high) {
   if (!std::isfinite(low)) return "-";
   const double reach = 0.5 * (high - low);
-  return in_digits_of(low, reach) + " to " + in_digits_of(high, reach);
+  return ensemble::in_digits_of(low, reach) + " to " + ensemble::in_digits_of(high, reach);
 }
 
 }  // namespace

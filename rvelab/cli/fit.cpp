@@ -1,11 +1,7 @@
 // rvelab fit: parameters whose tests give what was measured; without a target a sweep. Declared in command.hpp.
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <memory>
-#include <optional>
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/fit_input.hpp"
@@ -15,16 +11,14 @@
 #include "rvelab/error.hpp"
 #include "rvelab/fit/search.hpp"
 #include "rvelab/io/publish.hpp"
+#include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(input), {});
-}
+std::string text_of(const std::string& path) { return keys::whole_file<std::string>(path, "a text"); }
 
 /// The tests as their protocols and measured points say.
 Json described(const std::vector<ComparedTest>& tests) {
@@ -66,8 +60,7 @@ void prepare_folder(const FitArguments& arguments, const FitSetup& setup) {
   const std::string own = (fs::path(arguments.folder) / "asked.json").string();
   const std::string text = described(arguments, setup);
   if (arguments.resume && fs::exists(own)) {
-    std::ifstream input(own, std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(input), {}) != text)
+    if (text_of(own) != text)
       throw InputError(own +
                        ": is of another fit; allowed with --resume: the same options (--tests may grow); give "
                        "them, or another folder, or start again with --force");

@@ -1,11 +1,9 @@
 #include "rvelab/cli/fit_features.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/fit_reach.hpp"
-#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"
 
@@ -65,29 +63,6 @@ void use_repetitions(FitSetup& setup) {
   }
 }
 
-/// A measured feature beside the predictions.
-struct ComparedFeature {
-  const ComparedTest& test;
-  const MeasuredFeature& measured;
-  ensemble::Spread found;
-  double percent() const { return 100 * (found.mean - measured.value) / std::abs(measured.value); }
-  double errors() const { return (found.mean - measured.value) / std::hypot(measured.error, found.standard_deviation); }
-};
-
-std::vector<ComparedFeature> compared_features(const FitSetup& setup, const std::vector<FitResult>& predictions) {
-  std::vector<ComparedFeature> all;
-  for (std::size_t number = 0; number < setup.tests.size(); ++number) {
-    const ComparedTest& test = setup.tests[number];
-    for (std::size_t k = 0; k < test.features.size(); ++k) {
-      std::vector<double> values;
-      for (const FitResult& result : predictions)
-        if (result.failure.empty()) values.push_back(result.compared.at(number).at(k));
-      all.push_back({test, test.features[k], ensemble::spread_of(values)});
-    }
-  }
-  return all;
-}
-
 }  // namespace
 
 void take_features(FitSetup& setup) {
@@ -100,45 +75,6 @@ void take_features(FitSetup& setup) {
       if (!each.feature.over_stress()) expect_reach(each.feature, protocol);
   }
   use_repetitions(setup);
-}
-
-std::string features_text(const FitSetup& setup, const std::vector<FitResult>& predictions) {
-  std::vector<std::vector<std::string>> rows{
-      {"test", "", "feature", "measured +- scatter", "model: mean +- sd", "off, %", "off, errors"}};
-  for (const ComparedFeature& each : compared_features(setup, predictions))
-    rows.push_back({each.test.name, each.test.predict ? "predicted" : "fitted", each.measured.feature.name,
-                    ensemble::with_error(each.measured.value, each.measured.error),
-                    ensemble::with_error(each.found.mean, each.found.standard_deviation), two_digits(each.percent()),
-                    two_digits(each.errors())});
-  return rows.size() > 1 ? "\n" + aligned(rows, 3, 150) : "";
-}
-
-std::string features_csv(const FitSetup& setup, const std::vector<FitResult>& predictions) {
-  std::string text = "test,predicted,feature,measured,error,tests,mean,standard_deviation,n\n";
-  for (const ComparedFeature& each : compared_features(setup, predictions)) {
-    text += csv_cell(each.test.name) + "," + (each.test.predict ? "1," : "0,") + each.measured.feature.name;
-    for (const double value : {each.measured.value, each.measured.error, double(each.measured.tests.size()),
-                               each.found.mean, each.found.standard_deviation})
-      text += "," + csv_cell(value);
-    text += "," + std::to_string(each.found.n) + "\n";
-  }
-  return text;
-}
-
-Json features_json(const FitSetup& setup, const std::vector<FitResult>& predictions) {
-  Json list = Json::array();
-  for (const ComparedFeature& each : compared_features(setup, predictions))
-    list.push_back({{"test", each.test.name},
-                    {"predicted", each.test.predict},
-                    {"feature", each.measured.feature.name},
-                    {"off_percent", each.percent()},
-                    {"off_standard_errors", each.errors()},
-                    {"measured", each.measured.value},
-                    {"standard_error", each.measured.error},
-                    {"mean", each.found.mean},
-                    {"standard_deviation", each.found.standard_deviation},
-                    {"n", each.found.n}});
-  return list;
 }
 
 }  // namespace rvelab::cli

@@ -5,10 +5,8 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <sstream>
 
 #include "rvelab/cli/columns.hpp"
-#include "rvelab/cli/fit_features.hpp"
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/posterior.hpp"
@@ -65,7 +63,8 @@ std::optional<DensityMap> density_map(const FitSetup& setup, const fit::Finding&
 
 std::vector<std::string> row_of(const std::string& name, const Interval& found) {
   return {name, ensemble::with_error(found.mean, found.deviation),
-          in_digits_of(found.low, found.deviation) + " to " + in_digits_of(found.high, found.deviation)};
+          ensemble::in_digits_of(found.low, found.deviation) + " to " +
+              ensemble::in_digits_of(found.high, found.deviation)};
 }
 
 std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
@@ -160,10 +159,8 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"parameter", "mean +- sd", "95 % interval", "range"}};
   for (std::size_t k = 0; k < setup.parameters.size(); ++k) {
     const fit::Parameter& parameter = setup.parameters[k];
-    const Interval found = interval_of(values_of(parameter, finding.sample.col(Eigen::Index(k))));
-    rows.push_back({parameter.key, ensemble::with_error(found.mean, found.deviation),
-                    in_digits_of(found.low, found.deviation) + " to " + in_digits_of(found.high, found.deviation),
-                    in_words(parameter.low) + " to " + in_words(parameter.high)});
+    rows.push_back(row_of(parameter.key, interval_of(values_of(parameter, finding.sample.col(Eigen::Index(k))))));
+    rows.back().push_back(in_words(parameter.low) + " to " + in_words(parameter.high));
   }
   std::string text = aligned(rows) + "\n";
   if (const auto map = density_map(setup, finding))

@@ -28,6 +28,11 @@ std::string predictions_text(const FitSetup& setup, const std::vector<FitResult>
 std::string predictions_csv(const FitSetup& setup, const std::vector<FitResult>& predictions);
 Json predictions_json(const FitSetup& setup, const std::vector<FitResult>& predictions);
 
+/// The same of features: a table, the columns of features.csv, and "features" of fit.json.
+std::string features_text(const FitSetup& setup, const std::vector<FitResult>& predictions);
+std::string features_csv(const FitSetup& setup, const std::vector<FitResult>& predictions);
+Json features_json(const FitSetup& setup, const std::vector<FitResult>& predictions);
+
 /// Prints means and standard errors over the specimens at each point, and writes sweep.csv to the folder.
 void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, const std::vector<FitResult>& results,
                   const std::string& folder, bool json);

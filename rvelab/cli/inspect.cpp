@@ -5,7 +5,6 @@
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/grading_sizes.hpp"

@@ -15,7 +15,6 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/error.hpp"

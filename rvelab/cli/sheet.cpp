@@ -10,6 +10,7 @@
 #include "rvelab/cli/sharing.hpp"
 #include "rvelab/cli/sheet_cost.hpp"
 #include "rvelab/cli/sheet_setup.hpp"
+#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/regular_file.hpp"
@@ -109,7 +110,7 @@ void print(const SheetArguments& arguments, const sheet::Sheet& sheet) {
   for (const sheet::Number& number : sheet.numbers) {
     if (number.pressure > 0) continue;
     const double half = 0.5 * (number.high - number.low);
-    const auto shown = [&](double value) { return in_digits_of(value, half); };
+    const auto shown = [&](double value) { return ensemble::in_digits_of(value, half); };
     rows.push_back({number.label, number.density_name.empty() ? "all" : number.density_name, shown(number.mean),
                     half > 0 ? shown(number.low) + " to " + shown(number.high) : "-", number.unit,
                     std::to_string(number.tests.size())});

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "rvelab/contact/impact.hpp"
 #include "rvelab/error.hpp"

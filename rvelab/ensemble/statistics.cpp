@@ -93,4 +93,10 @@ std::string with_error(double value, double error) {
   return is_long ? "(" + both + ")" + end : both;
 }
 
+std::string in_digits_of(double value, double error) {
+  const std::string text = with_error(value, error);
+  if (!text.starts_with('(')) return text.substr(0, text.find(" +-"));
+  return text.substr(1, text.find(" +-") - 1) + text.substr(text.find(')') + 1);
+}
+
 }  // namespace rvelab::ensemble

@@ -34,5 +34,7 @@ double students_t(double freedom);
 /// "30.12 +- 0.45": the error to two digits, the value to the same place; powers of 1000 where numbers are long:
 /// "(25.7 +- 1.2)e6". Without an error (NaN, 0) four digits; "-" for NaN.
 std::string with_error(double value, double error);
+/// The value alone, with the digits that its error, or half of its interval, allows.
+std::string in_digits_of(double value, double error);
 
 }  // namespace rvelab::ensemble

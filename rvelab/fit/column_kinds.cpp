@@ -1,6 +1,5 @@
 #include "rvelab/fit/column_kinds.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <map>
 #include <string_view>

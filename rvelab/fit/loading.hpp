@@ -19,7 +19,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace rvelab::fit {

@@ -1,6 +1,5 @@
 #include "rvelab/fit/surrogate.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "rvelab/fit/minimise.hpp"

@@ -19,7 +19,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "rvelab/grains/turns.hpp"
 

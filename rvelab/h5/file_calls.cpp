@@ -2,19 +2,20 @@
 
 #include <dlfcn.h>
 
-#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/h5/run_stages.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/keys/parameters.hpp"
+#include "rvelab/keys/toml_source.hpp"
 #include "rvelab/pool/pool.hpp"
 #include "rvelab/pool/rve_state.hpp"
+#include "rvelab/protocol/run.hpp"
 #include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab::h5 {
@@ -121,6 +122,49 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
   for (const std::int64_t of_slot : generation) population.generations.push_back(std::uint32_t(of_slot));
   population.ids = rows.id;
   return population;
+}
+
+constexpr const char* source = "stages";  ///< in the place of a path, in messages
+
+protocol::Protocol read_stages(const std::string& text) {
+  std::string whole = text;
+  try {  // at the end, so that lines keep their numbers
+    if (!keys::parse_toml(text).contains("test")) whole += "\n[test]\nname = \"stages\"\n";
+  } catch (const toml::parse_error&) {  // parse_protocol says where
+  }
+  protocol::Protocol protocol = protocol::parse_protocol(whole, source);
+  if (!protocol.specimen_file.empty())
+    throw InputError(std::string(source) + ": specimen.file is given; allowed: none, since the RVE is the specimen");
+  protocol.quantities = 0;  // no record is kept
+  protocol.snapshots_every = 0;
+  return protocol;
+}
+
+/// InputError where they are not stages, or wrong in themselves.
+void check_stages(const std::string& text) { read_stages(text); }
+
+/// Runs them as `rvelab run` does; the specimen becomes its end state. The text is that of a protocol; [test] may be
+/// missing. Returns the grain-steps made. InputError: keys, values, what does not go with the specimen.
+/// IncrementFailed: a stage cannot be carried out. Interrupted: `stop` came true. The specimen is then as it was.
+std::int64_t run_stages(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop) {
+  const protocol::Protocol protocol = read_stages(text);
+  try {
+    protocol::Watch watch;
+    watch.stop = &stop;
+    protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
+    if (!run.complete) throw Interrupted();
+    specimen = std::move(run.end_state);
+    return std::int64_t(run.result.grain_steps);
+  } catch (const InputError&) {
+    throw;
+  } catch (const IncrementFailed&) {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    // A stage that does not get there: the state is as before, as where an increment fails.
+    throw IncrementFailed(error.what());
+  }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct FileCalls {
   pool::Population (*read_pool)(const std::string& path, const pool::Pool::TakeState& take);
   std::string (*parameters_text)(const Specimen& specimen);  ///< this and the next: keys/parameters.hpp
   void (*set_parameters)(Specimen& specimen, const std::string& text);
-  void (*check_stages)(const std::string& text);  ///< this and the next: run_stages.hpp
+  void (*check_stages)(const std::string& text);  ///< this and the next: file_calls.cpp
   std::int64_t (*run_stages)(Specimen& specimen, const std::string& text, const std::atomic<bool>& stop);
   const void* hdf5;  ///< its function H5check_version, of whatever HDF5 it is
 };

@@ -42,9 +42,8 @@ static inline __attribute__((always_inline)) void book_release(const Interaction
 }
 
 template <class Criterion>
-struct Beam {
+struct Beam : BondLaw<Beam<Criterion>> {
   static constexpr const char* name = Criterion::name;  ///< group of files
-  static constexpr Family family = Family::bonds;
   static constexpr InteractionField fields[] = {
       {"length_m", "m", positive_number},                   // l0
       {"radius_m", "m", positive_number},                   // R
@@ -85,14 +84,6 @@ struct Beam {
   }
   /// Its energy is that of linear springs, 1/2 f^2/k each.
   static constexpr bool has_energy = false;
-  template <class Columns>
-  static bool kept(const Columns&) {
-    return true;  // broken ones too: where they broke is a result
-  }
-  template <class Columns>
-  static bool acts(const Columns& column, double /*gap*/) {
-    return column(broken) == 0;
-  }
 
   static constexpr double pi = 3.14159265358979323846;
 

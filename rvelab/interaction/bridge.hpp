@@ -15,7 +15,7 @@
 
 namespace rvelab {
 
-struct CapillaryBridge {
+struct CapillaryBridge : NormalForceAlone<CapillaryBridge> {
   static constexpr const char* name = "bridges";
   static constexpr Family family = Family::water;
   using Settings = Water;
@@ -163,17 +163,6 @@ struct CapillaryBridge {
     else
       force = pull_at<V>(column, gap).force;
     return (there > zero) ? force : zero;
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) PlaneForces<V> in_plane(const InteractionArrays& p, long at,
-                                                                       const PlaneMotion<V>& m) {
-    return {normal_force<Advance, true, V>(p, at, m.length), V{}, V{}};
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) SpaceForces<V> in_space(const InteractionArrays& p, long at,
-                                                                       const SpaceTurn<V>& m, const Triple<V>*) {
-    const V zero = V{};
-    return {normal_force<Advance, false, V>(p, at, m.length), {zero, zero, zero}, {zero, zero, zero}};
   }
 };
 

@@ -19,8 +19,6 @@
 // the table; above 30 degrees the table begins at V = 1e-6 R1^3.
 #pragma once
 
-#include <cmath>
-
 #include "rvelab/interaction/arithmetic.hpp"
 #include "rvelab/interaction/bridge_table.hpp"
 
@@ -38,8 +36,7 @@ struct BridgeState {
 namespace bridge_range {
 inline constexpr double largest_angle = 0.78539816339744831;  ///< 45 degrees
 inline constexpr double largest_volume = 0.1;                 ///< over the cube of the smaller radius
-inline constexpr double least_volume = 1e-9;
-inline constexpr double least_suction = 1 / 0.3;  ///< S R1/(gamma cos(theta)), R1 the smaller radius
+inline constexpr double least_suction = 1 / 0.3;              ///< S R1/(gamma cos(theta)), R1 the smaller radius
 inline constexpr double largest_suction = 1 / 3e-5;
 }  // namespace bridge_range
 

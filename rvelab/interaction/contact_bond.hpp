@@ -13,9 +13,8 @@
 
 namespace rvelab {
 
-struct ContactBond {
+struct ContactBond : BondLaw<ContactBond> {
   static constexpr const char* name = "contact_bonds";
-  static constexpr Family family = Family::bonds;
   static constexpr InteractionField fields[] = {
       {"gap_m", "m", any_number},                         // g0
       {"normal_stiffness_N_m", "N/m", number_from_zero},  // kn
@@ -45,14 +44,6 @@ struct ContactBond {
     return {gap > column(first_gap) ? column(normal_stiffness) : 0, column(shear_stiffness), 0, 0};
   }
   static constexpr bool has_energy = false;
-  template <class Columns>
-  static bool kept(const Columns&) {
-    return true;
-  }
-  template <class Columns>
-  static bool acts(const Columns& column, double /*gap*/) {
-    return column(broken) == 0;
-  }
 
   /// Normal force of W bonds, and which are whole after this step.
   template <bool Advance, class V>

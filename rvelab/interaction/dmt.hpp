@@ -23,7 +23,7 @@ inline constexpr SettingsField<VanDerWaals> van_der_waals_fields[] = {
      "over which the pull falls to a quarter; it ends at 9 times it", true},
 };
 
-struct DmtAdhesion {
+struct DmtAdhesion : NormalForceAlone<DmtAdhesion> {
   static constexpr const char* name = "dmt_pairs";
   static constexpr Family family = Family::adhesion;
   using Settings = VanDerWaals;
@@ -75,7 +75,7 @@ struct DmtAdhesion {
     return column(pull_off) * (gap - s) - outside;
   }
 
-  template <class V>
+  template <bool Advance, bool plane, class V>
   static inline __attribute__((always_inline)) V normal_force(const InteractionArrays& p, long at, V length) {
     const V zero = V{}, one = zero + 1.0;
     const V z = load_as<V>(p.column[range] + at),
@@ -83,17 +83,6 @@ struct DmtAdhesion {
     const V s = (gap > zero) ? gap : zero, share = z / ((z > zero) ? z + s : one);
     const V pull = (share * share - cut) * (1 / (1 - cut));
     return (pull > zero) ? zero - load_as<V>(p.column[pull_off] + at) * pull : zero;
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) PlaneForces<V> in_plane(const InteractionArrays& p, long at,
-                                                                       const PlaneMotion<V>& m) {
-    return {normal_force<V>(p, at, m.length), V{}, V{}};
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) SpaceForces<V> in_space(const InteractionArrays& p, long at,
-                                                                       const SpaceTurn<V>& m, const Triple<V>*) {
-    const V zero = V{};
-    return {normal_force<V>(p, at, m.length), {zero, zero, zero}, {zero, zero, zero}};
   }
 };
 

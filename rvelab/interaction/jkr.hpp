@@ -27,7 +27,7 @@ inline constexpr SettingsField<SurfaceEnergy> surface_energy_fields[] = {
     {"surface_energy_J_m2", &SurfaceEnergy::surface_energy, "J/m^2", number_from_zero,
      "of the grains, half the work of adhesion", true}};
 
-struct JkrAdhesion {
+struct JkrAdhesion : NormalForceAlone<JkrAdhesion> {
   static constexpr const char* name = "jkr_contacts";
   static constexpr Family family = Family::adhesion;
   using Settings = SurfaceEnergy;
@@ -42,10 +42,9 @@ struct JkrAdhesion {
   enum Column { touching, force_scale, overlap_scale };
 
   static constexpr double pi = 3.14159265358979323846;
-  static constexpr double least_y = 0.62996052494743658;      ///< (1/4)^(1/3)
-  static constexpr double least_overlap = -0.75 * least_y;    ///< of y^4 - y
-  static constexpr double reach_over_scale = -least_overlap;  ///< gap at which grains part, over delta1
-  static constexpr double least_rise = 1e-3;                  ///< keeps the stiffness finite at parting
+  static constexpr double least_y = 0.62996052494743658;    ///< (1/4)^(1/3)
+  static constexpr double least_overlap = -0.75 * least_y;  ///< of y^4 - y
+  static constexpr double least_rise = 1e-3;                ///< keeps the stiffness finite at parting
 
   static const char* misfit(const SurfaceEnergy& surface, const SpecimenKind& specimen) {
     if (!(surface.surface_energy > 0)) return "surface_energy_J_m2 above 0";
@@ -113,7 +112,7 @@ struct JkrAdhesion {
     return column(force_scale) * column(overlap_scale) * (y * y3 * ((4.0 / 15.0 * y3 - 2.0 / 3.0) * y3 + 0.25) - hertz);
   }
 
-  template <bool Advance, class V>
+  template <bool Advance, bool plane, class V>
   static inline __attribute__((always_inline)) V normal_force(const InteractionArrays& p, long at, V length) {
     const V zero = V{}, one = zero + 1.0;
     const V overlap = (load_as<V>(p.radius_i + at) + load_as<V>(p.radius_j + at)) - length;
@@ -125,17 +124,6 @@ struct JkrAdhesion {
     }
     const V safe = (scale > zero) ? scale : one;
     return (there > zero) ? load_as<V>(p.column[force_scale] + at) * force_ratio<V>(overlap / safe) : zero;
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) PlaneForces<V> in_plane(const InteractionArrays& p, long at,
-                                                                       const PlaneMotion<V>& m) {
-    return {normal_force<Advance, V>(p, at, m.length), V{}, V{}};
-  }
-  template <bool Advance, class V>
-  static inline __attribute__((always_inline)) SpaceForces<V> in_space(const InteractionArrays& p, long at,
-                                                                       const SpaceTurn<V>& m, const Triple<V>*) {
-    const V zero = V{};
-    return {normal_force<Advance, V>(p, at, m.length), {zero, zero, zero}, {zero, zero, zero}};
   }
 };
 

@@ -134,6 +134,36 @@ struct SpaceForces {
 
 }  // namespace
 
+/// What bonds have in common: broken ones act no more and are kept, since where they broke is a result.
+template <class Law>
+struct BondLaw {
+  static constexpr Family family = Family::bonds;
+  template <class Columns>
+  static bool kept(const Columns&) {
+    return true;
+  }
+  template <class Columns>
+  static bool acts(const Columns& column, double /*gap*/) {
+    return column(Law::broken) == 0;
+  }
+};
+
+/// Laws that act along the normal alone, by their normal_force<Advance, plane, V>(arrays, at, length of the branch).
+template <class Law>
+struct NormalForceAlone {
+  template <bool Advance, class V>
+  static inline __attribute__((always_inline)) PlaneForces<V> in_plane(const InteractionArrays& p, long at,
+                                                                       const PlaneMotion<V>& m) {
+    return {Law::template normal_force<Advance, true, V>(p, at, m.length), V{}, V{}};
+  }
+  template <bool Advance, class V>
+  static inline __attribute__((always_inline)) SpaceForces<V> in_space(const InteractionArrays& p, long at,
+                                                                       const SpaceTurn<V>& m, const Triple<V>*) {
+    const V zero = V{};
+    return {Law::template normal_force<Advance, false, V>(p, at, m.length), {zero, zero, zero}, {zero, zero, zero}};
+  }
+};
+
 /// Elastic stiffness of an interaction now. N/m; N m: against bending and, in space, against twisting.
 struct InteractionStiffness {
   double normal = 0, tangential = 0, bending = 0, twisting = 0;

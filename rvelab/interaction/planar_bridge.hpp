@@ -6,11 +6,10 @@
 //   pull = 2 gamma + 2 S (y - rho) = 2 S y,   filling angle d_i = atan2(y, x_i) - atan2(rho sin(theta), R_i + rho
 //   cos(theta)) V = L y - (R_1 + R_2) rho sin(theta) - R_1^2 d_1 - R_2^2 d_2 - rho^2 psi,   psi = pi - 2 theta - d_1 -
 //   d_2 surface energy = 2 gamma rho psi - 2 gamma cos(theta) (R_1 d_1 + R_2 d_2)
-// It ruptures where the menisci touch, y = rho: at the gap sqrt(D_1^2 - rho^2) + sqrt(D_2^2 - rho^2) - R_1 - R_2 at
-// given suction. There the pull is still 2 gamma. At a given volume rho follows from V by Newton's method; with
-// Maxwell's relation d(pull)/dS at a gap = dV/d(gap) at a suction.
+// It ruptures where the menisci touch, y = rho: at the gap sqrt(D_1^2 - rho^2) + sqrt(D_2^2 - rho^2) - R_1 - R_2. There
+// the pull is still 2 gamma. Maxwell's relation: d(pull)/dS at a gap = dV/d(gap) at a suction.
 //
-// Signs, energies and overlapping grains as in capillary.hpp. Volumes up to where the arcs become straight, S = 0.
+// Signs, energies and overlapping grains as in capillary.hpp.
 #pragma once
 
 #include <cmath>
@@ -26,12 +25,9 @@ struct PlanarPair {
 
 namespace planar_detail {
 
-/// A bridge of a given arc, and its derivatives. Volumes in m^2, energies in J/m.
+/// A bridge of a given arc. Volume in m^2, energy in J/m; pull_over_gap at given suction.
 struct Arc {
-  double height = 0, pull = 0, volume = 0, psi = 0, surface_energy = 0;
-  double pull_over_gap = 0;  ///< at given suction
-  double pull_over_rho = 0, volume_over_rho = 0;
-  bool bridges = false;
+  double pull = 0, volume = 0, surface_energy = 0, pull_over_gap = 0;
 };
 
 inline Arc arc_at(const PlanarPair& p, double gap, double rho) {
@@ -46,19 +42,11 @@ inline Arc arc_at(const PlanarPair& p, double gap, double rho) {
   const double y = std::sqrt(under), S = p.tension / rho;
   const double d1 = std::atan2(y, x1) - std::atan2(rho * s, p.r1 + rho * c);
   const double d2 = std::atan2(y, x2) - std::atan2(rho * s, p.r2 + rho * c);
-  out.height = y;
-  out.psi = bridge_detail::pi - 2 * p.theta - d1 - d2;
-  out.bridges = y >= rho && out.psi > 0;
+  const double psi = bridge_detail::pi - 2 * p.theta - d1 - d2;
   out.pull = 2 * S * y;
-  out.volume = L * y - (p.r1 + p.r2) * rho * s - p.r1 * p.r1 * d1 - p.r2 * p.r2 * d2 - rho * rho * out.psi;
-  out.surface_energy = 2 * p.tension * (rho * out.psi - c * (p.r1 * d1 + p.r2 * d2));
+  out.volume = L * y - (p.r1 + p.r2) * rho * s - p.r1 * p.r1 * d1 - p.r2 * p.r2 * d2 - rho * rho * psi;
+  out.surface_energy = 2 * p.tension * (rho * psi - c * (p.r1 * d1 + p.r2 * d2));
   out.pull_over_gap = 2 * S * (-x1 * x2 / (L * y));
-  const double x1_rho = (p.r1 - p.r2) * c / L, y_rho = (rho + p.r1 * c - x1 * x1_rho) / y;
-  out.pull_over_rho = 2 * S * (y_rho - y / rho);
-  const double d1_rho = (x1 * y_rho - y * x1_rho) / square1 - p.r1 * s / square1;
-  const double d2_rho = (x2 * y_rho + y * x1_rho) / square2 - p.r2 * s / square2;
-  out.volume_over_rho = L * y_rho - (p.r1 + p.r2) * s - p.r1 * p.r1 * d1_rho - p.r2 * p.r2 * d2_rho -
-                        2 * rho * out.psi + rho * rho * (d1_rho + d2_rho);
   return out;
 }
 
@@ -68,43 +56,10 @@ inline double rupture_gap(const PlanarPair& p, double rho) {
   return std::sqrt(p.r1 * (p.r1 + 2 * rho * c)) + std::sqrt(p.r2 * (p.r2 + 2 * rho * c)) - p.r1 - p.r2;
 }
 
-inline BridgeState state(const Arc& arc, const PlanarPair& p, double rho, double gap) {
-  BridgeState out;
-  out.force = -arc.pull;
-  if (gap >= 0) out.stiffness = arc.pull_over_gap;
-  out.suction = p.tension / rho;
-  out.volume = arc.volume;
-  return out;
-}
-
 }  // namespace planar_detail
-
-/// Largest volume of discs at a gap, m^2: that of arcs of 1e4 (R_1 + R_2), which are nearly straight.
-inline double planar_largest_volume(const PlanarPair& p, double gap) {
-  return planar_detail::arc_at(p, gap, 1e4 * (p.r1 + p.r2)).volume;
-}
 
 inline double planar_rupture_gap_of_suction(const PlanarPair& p, double suction) {
   return planar_detail::rupture_gap(p, p.tension / suction);
-}
-/// The arc at which a volume ruptures; the volume of touching menisci grows with the arc.
-inline double planar_rupture_arc(const PlanarPair& p, double volume) {
-  const double start = std::sqrt(volume);
-  double low = 0, high = start;
-  for (int k = 0; k < 60; ++k) {
-    if (planar_detail::arc_at(p, planar_detail::rupture_gap(p, high), high).volume >= volume) break;
-    low = high;
-    high *= 2;
-  }
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (low + high);
-    const double held = planar_detail::arc_at(p, planar_detail::rupture_gap(p, middle), middle).volume;
-    (held < volume ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-inline double planar_rupture_gap_of_volume(const PlanarPair& p, double volume) {
-  return planar_detail::rupture_gap(p, planar_rupture_arc(p, volume));
 }
 
 /// A bridge of given suction, S > 0, Pa.
@@ -113,36 +68,13 @@ inline BridgeState planar_suction_bridge(const PlanarPair& p, double suction, do
   if (gap > rupture) return {};
   const double s = gap > 0 ? gap : 0;
   const planar_detail::Arc arc = planar_detail::arc_at(p, s, rho), last = planar_detail::arc_at(p, rupture, rho);
-  BridgeState out = planar_detail::state(arc, p, rho, gap);
+  BridgeState out;
+  out.force = -arc.pull;
+  if (gap >= 0) out.stiffness = arc.pull_over_gap;
+  out.suction = p.tension / rho;
+  out.volume = arc.volume;
   out.energy = (arc.surface_energy + suction * arc.volume) - (last.surface_energy + suction * last.volume) +
                out.force * (s - gap);
-  return out;
-}
-
-/// A bridge of given volume, m^2; `rupture_arc` = planar_rupture_arc(p, volume), kept for the pair.
-inline BridgeState planar_volume_bridge(const PlanarPair& p, double volume, double rupture_arc, double gap) {
-  const double rupture = planar_detail::rupture_gap(p, rupture_arc);
-  if (gap > rupture) return {};
-  const double s = gap > 0 ? gap : 0;
-  // Between the arc whose menisci touch at this gap and that of rupture, which is the largest: safeguarded Newton.
-  double low = 0, high = rupture_arc, rho = rupture_arc;
-  planar_detail::Arc arc = planar_detail::arc_at(p, s, rho);
-  for (int step = 0; step < 60; ++step) {
-    const bool none = !(arc.height > 0);
-    (none || arc.volume < volume ? low : high) = rho;
-    double next = none ? 0 : rho - (arc.volume - volume) / arc.volume_over_rho;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::fabs(next - rho) <= 1e-15 * rho) break;
-    rho = next;
-    arc = planar_detail::arc_at(p, s, rho);
-  }
-  const planar_detail::Arc last = planar_detail::arc_at(p, rupture, rupture_arc);
-  BridgeState out = planar_detail::state(arc, p, rho, gap);
-  if (gap >= 0) {  // at given volume: the arc follows
-    const double volume_over_gap = -arc.pull_over_rho * rho * rho / p.tension;
-    out.stiffness = arc.pull_over_gap - arc.pull_over_rho * volume_over_gap / arc.volume_over_rho;
-  }
-  out.energy = arc.surface_energy - last.surface_energy + out.force * (s - gap);
   return out;
 }
 

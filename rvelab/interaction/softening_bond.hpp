@@ -14,9 +14,8 @@
 
 namespace rvelab {
 
-struct SofteningBond {
+struct SofteningBond : BondLaw<SofteningBond> {
   static constexpr const char* name = "softening_bonds";
-  static constexpr Family family = Family::bonds;
   static constexpr InteractionField fields[] = {
       {"gap_m", "m", any_number},                           // when it was made
       {"radius_m", "m", positive_number},                   // R
@@ -90,14 +89,6 @@ struct SofteningBond {
     return (normal > 0 ? 1 : left) * of(normal * normal, kn * area) +
            left * (of(squared(shear_force), ks * area) +
                    (of(squared(bending_moment), kn * inertia) + of(twist * twist, 2 * ks * inertia)));
-  }
-  template <class Columns>
-  static bool kept(const Columns&) {
-    return true;
-  }
-  template <class Columns>
-  static bool acts(const Columns& column, double /*gap*/) {
-    return column(broken) == 0;
   }
 
   /// Springs of W bonds: N, N m, and their section. `bending` and `shear` are magnitudes.

@@ -1,7 +1,6 @@
 #include "rvelab/keys/parameters.hpp"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "rvelab/error.hpp"

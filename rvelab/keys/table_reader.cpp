@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <sstream>
 
 #include "rvelab/contact/interval_words.hpp"
 #include "rvelab/error.hpp"

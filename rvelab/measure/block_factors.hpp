@@ -9,7 +9,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <iterator>
 #include <set>
 #include <span>

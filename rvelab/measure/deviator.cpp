@@ -1,7 +1,6 @@
 #include "rvelab/measure/deviator.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

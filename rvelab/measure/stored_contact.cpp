@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/superellipsoid_rows.hpp"

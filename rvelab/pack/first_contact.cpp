@@ -1,7 +1,6 @@
 #include "rvelab/pack/first_contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"

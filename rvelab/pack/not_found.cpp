@@ -1,7 +1,6 @@
 #include "rvelab/pack/not_found.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 namespace rvelab::pack {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/material_toml.hpp"

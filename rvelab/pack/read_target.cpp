@@ -1,7 +1,6 @@
 #include "rvelab/pack/read_target.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/pack/regular.hpp"

@@ -5,7 +5,6 @@
 #include <exception>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/pack/consolidation.hpp"

@@ -4,7 +4,6 @@
 // the state that its step begins in.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>

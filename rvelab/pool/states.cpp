@@ -1,5 +1,4 @@
 // Measures, costs and states of the RVEs of a pool. Declared in threaded_pool.hpp.
-#include <string>
 #include <utility>
 
 #include "rvelab/measure/measures.hpp"

@@ -15,12 +15,9 @@ using namespace keys;
 
 PathStage path_of(const DeviatoricStage& stage, int dimension) {
   PathStage path;
-  PathRow drive{"eps_q", {}, {}, {stage.to_strain}};
-  PathRow pressure{"p", {}, {}, {stage.pressure}, stage.pressure};  // held: no ramp from the p of the start
-  drive.strain.setZero();
-  drive.stress.setZero();
-  pressure.strain.setZero();
-  pressure.stress.setZero();
+  PathRow drive{"eps_q", Matrix3::Zero(), Matrix3::Zero(), {stage.to_strain}};
+  // Held: no ramp from the p of the start.
+  PathRow pressure{"p", Matrix3::Zero(), Matrix3::Zero(), {stage.pressure}, stage.pressure};
   for (int k = 0; k < dimension; ++k) pressure.stress(k, k) = -1.0 / dimension;
   path.records_per_point = std::max(1L, std::lround(stage.to_strain / stage.record_every));
   if (dimension == 2) {
@@ -32,9 +29,7 @@ PathStage path_of(const DeviatoricStage& stage, int dimension) {
     return path;
   }
   // Deviators, compression positive: axis k has cos(theta_k) with theta_z = theta, theta_x,y = theta -+ 120 degrees.
-  PathRow across{"deviator across", {}, {}, {}};
-  across.strain.setZero();
-  across.stress.setZero();
+  PathRow across{"deviator across", Matrix3::Zero(), Matrix3::Zero(), {}};
   for (int k = 0; k < 3; ++k) {
     const double turn = stage.lode_angle_deg + (k == 0 ? -120 : k == 1 ? 120 : 0);
     const UnitVector direction = unit_vector(turn / 360);

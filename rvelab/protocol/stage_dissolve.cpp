@@ -2,7 +2,6 @@
 // in stage_kinds.hpp.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"

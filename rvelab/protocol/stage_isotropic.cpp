@@ -1,6 +1,5 @@
 // Isotropic stages: consolidation to a pressure. Declared in stage_kinds.hpp.
 #include <Eigen/LU>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"

@@ -1,5 +1,4 @@
 // Relax stages: quasi-static steps at fixed cell. Declared in stage_kinds.hpp.
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <mutex>
 
 #include "rvelab/ranks/perform.hpp"

@@ -24,6 +24,15 @@ inline Json numbers(const std::vector<double>& values) {
   return list;
 }
 
+/// What colours the grains or points of a page, whose finite values over all states are `sorted`: its range, and the
+/// part of it that the scale shows.
+template <class Field>
+Json described_field(const Field& field, const std::vector<double>& sorted) {
+  const auto part = [&](double p) { return number(sorted[std::size_t(p * double(sorted.size() - 1))]); };
+  return {{"key", field.key}, {"label", field.label}, {"unit", field.unit}, {"about_zero", field.about_zero},
+          {"low", part(0)},   {"high", part(1)},      {"from", part(0.01)}, {"to", part(0.99)}};
+}
+
 /// A table: a list of rows, a row a list of texts, the first row the head (empty texts: none).
 using Table = std::vector<std::vector<std::string>>;
 

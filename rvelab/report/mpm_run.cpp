@@ -225,15 +225,7 @@ MpmRun read_mpm_run(const std::string& folder, double largest) {
     std::sort(all[f].begin(), all[f].end());
     if (all[f].empty() || all[f].front() == all[f].back()) continue;
     shown.push_back(f);
-    const auto part = [&](double p) { return number(all[f][std::size_t(p * double(all[f].size() - 1))]); };
-    states["fields"].push_back({{"key", mpm_fields[f].key},
-                                {"label", mpm_fields[f].label},
-                                {"unit", mpm_fields[f].unit},
-                                {"about_zero", mpm_fields[f].about_zero},
-                                {"low", number(all[f].front())},
-                                {"high", number(all[f].back())},
-                                {"from", part(0.01)},
-                                {"to", part(0.99)}});
+    states["fields"].push_back(described_field(mpm_fields[f], all[f]));
   }
   states["states"] = Json::array();
   for (const Frame& frame : frames) {

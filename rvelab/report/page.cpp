@@ -11,7 +11,6 @@
 #include "rvelab/io/version.hpp"
 #include "rvelab/report/mpm_run.hpp"
 #include "rvelab/report/states.hpp"
-#include "rvelab/report/strength.hpp"
 #include "rvelab/report/tables.hpp"
 #include "rvelab/report/template.hpp"
 #include "rvelab/report/words.hpp"
@@ -20,6 +19,7 @@ namespace rvelab::report {
 namespace {
 
 namespace fs = std::filesystem;
+using ensemble::Spread;
 
 struct Inputs {
   struct File {
@@ -122,6 +122,87 @@ Json run_of(const Test& test, std::size_t kind, std::size_t every) {
   run["found"] = test.recorded.snapshots.size();
   run["states"] = states_of(test, chosen_states(test, every));
   return run;
+}
+
+const Spread* spread_of(const Results& results, std::size_t set, const std::string& name) {
+  for (const ensemble::Row& row : results.summary.rows)
+    if (row.group == set && std::isnan(row.pressure) && row.name == name) return &row.spread;
+  return nullptr;
+}
+
+/// Mean angle at large strain over all tests of the set; NaN if one ends before.
+double large_strain_angle(const std::vector<Test>& tests, const std::vector<Kind>& kinds, std::size_t set) {
+  std::size_t place = 0;
+  while (ensemble::measures()[place].name != "large_strain_friction_angle_deg") ++place;
+  double sum = 0;
+  int n = 0;
+  for (const Kind& kind : kinds)
+    if (kind.set == set)
+      for (const std::size_t k : kind.of) sum += tests[k].measured[place], ++n;
+  return sum / n;
+}
+
+std::string angle_in_words(const Spread& spread) {
+  return with_its_error(spread.mean, spread.standard_error) + " degrees";
+}
+
+/// Mohr circles of the peaks and the friction angle of each set of tests: circles, angle, cohesion, interval, and a
+/// sentence with these values. The angle is the mean over the specimens of the angle that rvelab run prints.
+Json strength_of(const std::vector<Test>& tests, const std::vector<Kind>& kinds, const Results& results) {
+  Json sets = Json::array();
+  const std::vector<std::string> names = names_of_sets(kinds);
+  for (std::size_t set = 0; set < names.size(); ++set) {
+    const bool cohesive = results.summary.cohesive_groups.at(set) != calibrate::Cohesive::no;
+    const Spread* angle =
+        spread_of(results, set, cohesive ? "cohesive_friction_angle_deg" : "secant_friction_angle_deg");
+    if (angle == nullptr) continue;
+    const Spread* cohesion = cohesive ? spread_of(results, set, "cohesion_Pa") : nullptr;
+    std::size_t rising = 0, count = 0;
+    Json circles = Json::array();
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      if (kinds[k].set != set) continue;
+      Json each = Json::array();
+      for (const std::size_t row : kinds[k].of) {
+        const Test& test = tests[row];
+        if (!std::isfinite(test.strength.major)) continue;
+        ++count;
+        const auto last = calibrate::last_stage(test.recorded.result);
+        rising += calibrate::rising_at_end(last, calibrate::peak(last, test.dimension)) &&
+                          std::abs(last.back().strain) < 0.15 - 1e-9
+                      ? 1
+                      : 0;
+        each.push_back({number(test.strength.s() / 1e3), number(test.strength.t() / 1e3)});
+      }
+      if (!each.empty()) circles.push_back({{"kind", k}, {"states", std::move(each)}});
+    }
+    std::string words =
+        (names[set].empty() ? "F" : names[set] + ": f") + std::string("riction angle ") + angle_in_words(*angle);
+    if (angle->n > 1)
+      words += ", mean and standard error of " + counted(angle->n, "specimen") +
+               (angle->n < 3 ? "" : " (95 % interval of the mean " + interval_in_words(angle->low, angle->high) + ")");
+    if (cohesion != nullptr)
+      words += ", the tangent of a cohesive soil with c = " +
+               with_its_error(cohesion->mean / 1e3, cohesion->standard_error / 1e3) + " kPa";
+    else
+      words += ", a secant through the origin at the largest \u03c3\u2081 \u2212 \u03c3\u2083";
+    const double large = large_strain_angle(tests, kinds, set);
+    if (std::isfinite(large)) words += "; at large strain " + in_three_digits(large) + " degrees";
+    words += ".";
+    if (rising > 0)
+      words += " " + std::to_string(rising) + " of " + counted(count, "test") +
+               " still rose at the end: the angle is a lower bound; run further (to_strain), to 15 % at most.";
+    sets.push_back({{"name", names[set]},
+                    {"set", set},
+                    {"circles", std::move(circles)},
+                    {"angle", number(angle->mean)},
+                    {"low", number(angle->mean - angle->standard_error)},
+                    {"high", number(angle->mean + angle->standard_error)},
+                    {"text", angle_in_words(*angle)},
+                    {"cohesion_kPa", number(cohesion != nullptr ? cohesion->mean / 1e3 : 0)},
+                    {"large_strain", number(large)},
+                    {"words", words}});
+  }
+  return sets;
 }
 
 Json section_of(const std::string& name, const std::vector<Test>& tests, std::size_t every, Page& page) {

@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "rvelab/ensemble/statistics.hpp"
@@ -62,14 +61,6 @@ void measure(const Specimen& specimen, const Network& network, const Motion& mot
                                          : specimen.grains.material[g];
     }
   }
-}
-
-/// Quantile of the finite values.
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return nan;
-  const auto place = values.begin() + std::ptrdiff_t(part * double(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
 }
 
 struct State {
@@ -201,19 +192,10 @@ Json states_of(const Test& test, const ChosenStates& chosen) {
     std::vector<double> all;
     for (const auto& values : field.of_states)
       std::copy_if(values.begin(), values.end(), std::back_inserter(all), [](double v) { return std::isfinite(v); });
-    const auto [low, high] = std::minmax_element(all.begin(), all.end());
-    ranges.emplace_back(all.empty() ? 0 : *low, all.empty() ? 0 : *high);
-    if (!all.empty() && *high > *low)
-      json["fields"].push_back({{"key", field.key},
-                                {"label", field.label},
-                                {"unit", field.unit},
-                                {"about_zero", field.about_zero},
-                                {"low", number(*low)},
-                                {"high", number(*high)},
-                                {"from", number(quantile(all, 0.01))},
-                                {"to", number(quantile(all, 0.99))}});
-    else
-      ranges.back() = {0, 0};
+    std::sort(all.begin(), all.end());
+    const bool varies = !all.empty() && all.back() > all.front();
+    ranges.emplace_back(varies ? all.front() : 0, varies ? all.back() : 0);
+    if (varies) json["fields"].push_back(described_field(field, all));
   }
   json["states"] = Json::array();
   for (std::size_t s = 0; s < states.size(); ++s) {

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <span>
-#include <sstream>
 
 #include "rvelab/calibrate/calibrate.hpp"
 #include "rvelab/ensemble/loops.hpp"

@@ -49,14 +49,8 @@ std::string with_its_error(double value, double error) {
 
 std::string interval_in_words(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "";
-  const auto in_digits_of = [](double value, double error) {
-    const std::string text = ensemble::with_error(value, error);
-    const std::size_t begin = text.starts_with('(') ? 1 : 0, end = text.find(')');
-    return with_minus(text.substr(begin, text.find(" +-") - begin) +
-                      (end == std::string::npos ? "" : text.substr(end + 1)));
-  };
   const double half = 0.5 * (high - low);
-  return in_digits_of(low, half) + " to " + in_digits_of(high, half);
+  return with_minus(ensemble::in_digits_of(low, half)) + " to " + with_minus(ensemble::in_digits_of(high, half));
 }
 
 std::string counted(std::size_t number, const std::string& what) {

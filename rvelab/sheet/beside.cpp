@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <set>
 
 #include "rvelab/error.hpp"
 #include "rvelab/fit/curve.hpp"

@@ -4,7 +4,6 @@
 
 #include <toml++/toml.h>
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,6 +1,5 @@
 #include "rvelab/sheet/write_sheet.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 

@@ -2,7 +2,6 @@
 // machine's byte order: a list or a table begins with its length, a text too, and a table stands column by column.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -1,11 +1,9 @@
 #include "rvelab/specimen/specimen_check.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include "rvelab/specimen/body_check.hpp"
 #include "rvelab/specimen/checked_specimen.hpp"

@@ -59,11 +59,6 @@ TEST_CASE("planar bridges: two equal discs in contact, and at rupture, in number
   CHECK(planar_rupture_gap_of_suction(p, 0.5) == Approx(rupture).epsilon(1e-14));
   CHECK(planar_suction_bridge(p, 0.5, rupture * (1 - 1e-13)).force == Approx(-2).epsilon(1e-10));
   CHECK(planar_suction_bridge(p, 0.5, rupture * (1 + 1e-12)).force == 0);
-  // The same bridge at its volume.
-  const double arc = planar_rupture_arc(p, volume);
-  const BridgeState closed = planar_volume_bridge(p, volume, arc, 0);
-  CHECK(closed.force == Approx(-4).epsilon(1e-11));
-  CHECK(closed.suction == Approx(0.5).epsilon(1e-11));
 }
 
 TEST_CASE("planar bridges: a small one is a meniscus between parallel plates", "[interaction]") {
@@ -81,20 +76,11 @@ TEST_CASE("planar bridges: a small one is a meniscus between parallel plates", "
 TEST_CASE("planar bridges: force, stiffness, energy, Maxwell's relation", "[interaction]") {
   for (const PlanarPair p :
        {PlanarPair{1, 1, 0, 0.073}, PlanarPair{1, 3, 0.4, 0.073}, PlanarPair{2, 0.8, 0.7, 0.073}}) {
-    const double volume = 0.02, arc = planar_rupture_arc(p, volume), rupture = planar_rupture_gap_of_volume(p, volume);
     const double suction = 0.073 / 0.15, open = planar_rupture_gap_of_suction(p, suction);
+    const auto held = [&](double gap) { return planar_suction_bridge(p, suction, gap); };
     for (const double part : {0.02, 0.3, 0.7, 0.97}) {
       CAPTURE(p.r2, p.theta, part);
-      const double h = 1e-5 * rupture;
-      const auto closed = [&](double gap) { return planar_volume_bridge(p, volume, arc, gap); };
-      const BridgeState here = closed(part * rupture);
-      CHECK(here.volume == Approx(volume).epsilon(1e-12));
-      CHECK(-(closed(part * rupture + h).energy - closed(part * rupture - h).energy) / (2 * h) ==
-            Approx(here.force).epsilon(1e-7));
-      CHECK(-(closed(part * rupture + h).force - closed(part * rupture - h).force) / (2 * h) ==
-            Approx(here.stiffness).epsilon(1e-6));
-      const auto held = [&](double gap) { return planar_suction_bridge(p, suction, gap); };
-      const double gap = part * open;
+      const double h = 1e-5 * open, gap = part * open;
       CHECK(-(held(gap + h).energy - held(gap - h).energy) / (2 * h) == Approx(held(gap).force).epsilon(1e-7));
       CHECK(-(held(gap + h).force - held(gap - h).force) / (2 * h) == Approx(held(gap).stiffness).epsilon(1e-6));
       const double dS = 1e-5 * suction;
@@ -103,28 +89,19 @@ TEST_CASE("planar bridges: force, stiffness, energy, Maxwell's relation", "[inte
           (2 * dS);
       CHECK(pull_over_suction == Approx((held(gap + h).volume - held(gap - h).volume) / (2 * h)).epsilon(1e-6));
     }
-    CHECK(planar_volume_bridge(p, volume, arc, rupture * (1 - 1e-12)).force == Approx(-2 * p.tension).epsilon(1e-5));
-    CHECK(planar_volume_bridge(p, volume, arc, rupture * (1 + 1e-9)).force == 0);
-    CHECK(std::abs(planar_volume_bridge(p, volume, arc, rupture * (1 - 1e-12)).energy) < 1e-10);
-    CHECK(std::abs(planar_suction_bridge(p, suction, open * (1 - 1e-12)).energy) < 1e-10);
+    CHECK(held(open * (1 - 1e-12)).force == Approx(-2 * p.tension).epsilon(1e-5));
+    CHECK(held(open * (1 + 1e-9)).force == 0);
+    CHECK(std::abs(held(open * (1 - 1e-12)).energy) < 1e-10);
     // Overlapping discs.
-    const BridgeState contact = planar_volume_bridge(p, volume, arc, 0),
-                      over = planar_volume_bridge(p, volume, arc, -0.01);
+    const BridgeState contact = held(0), over = held(-0.01);
     CHECK(over.force == contact.force);
     CHECK(over.stiffness == 0);
     CHECK(over.energy == Approx(contact.energy + 0.01 * contact.force).epsilon(1e-12));
   }
 }
 
-TEST_CASE("planar bridges: radii change places; the largest volume has straight menisci", "[interaction]") {
+TEST_CASE("planar bridges: radii change places", "[interaction]") {
   const PlanarPair p{1, 2.5, 0.3, 1}, q{2.5, 1, 0.3, 1};
   CHECK(planar_suction_bridge(p, 4, 0.02).force == Approx(planar_suction_bridge(q, 4, 0.02).force).epsilon(1e-13));
   CHECK(planar_suction_bridge(p, 4, 0.02).volume == Approx(planar_suction_bridge(q, 4, 0.02).volume).epsilon(1e-12));
-  // Equal discs in contact, theta = 0: straight menisci are tangents, V = 4 R^2 - pi R^2.
-  CHECK(planar_largest_volume(PlanarPair{1, 1, 0, 1}, 0) == Approx(4 - pi).epsilon(1e-3));
-  // theta = 45 degrees, parted: straight menisci meet the discs at d = 45 degrees.
-  const PlanarPair wide{1, 1, pi / 4, 1};
-  const double largest = planar_largest_volume(wide, 0.01), angle = pi / 4;
-  const double half = 2.01 * std::sin(angle) - std::sin(angle) * std::cos(angle) - angle;
-  CHECK(largest == Approx(2 * half).epsilon(1e-3));
 }

@@ -7,7 +7,6 @@
 // simplex at a grain of the cell. These are then the simplices of the infinite periodic triangulation.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "tools/voids/cell.hpp"

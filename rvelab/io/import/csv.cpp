@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <numeric>
 
 #include "rvelab/cell/cell.hpp"

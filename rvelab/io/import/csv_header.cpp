@@ -17,13 +17,6 @@ std::string lower(std::string_view text) {
   return small;
 }
 
-bool is_cell_number(std::string_view cell) {
-  double value = 0;
-  std::string with_point(cell);
-  std::replace(with_point.begin(), with_point.end(), ',', '.');
-  return parsed(std::string_view(with_point), value);
-}
-
 /// Which of the marks parts the cells of a line: the first that it holds outside of quotation marks.
 char delimiter_of(std::string_view line, std::string_view marks) {
   std::string plain;
@@ -58,7 +51,7 @@ std::vector<std::string> names_in_comments(const std::vector<std::string_view>& 
   for (auto comment = comments.rbegin(); comment != comments.rend(); ++comment) {
     if (first_non_utf8(*comment) != std::string_view::npos) continue;
     auto names = names_in(spoken(*comment), " \t,;");
-    if (names.size() == columns && std::none_of(names.begin(), names.end(), is_cell_number)) return names;
+    if (names.size() == columns && std::none_of(names.begin(), names.end(), CsvTable::is_number)) return names;
   }
   return {};
 }
@@ -102,7 +95,7 @@ bool CsvTable::read_first(std::string_view line, long number, const std::vector<
     cells.clear();
     split(line, number, cells);
     while (cells.size() > 1 && cells.back().empty()) cells.pop_back();
-    return std::all_of(cells.begin(), cells.end(), is_cell_number);
+    return std::all_of(cells.begin(), cells.end(), CsvTable::is_number);
   };
   bool numbers = false;
   if (delimiter_ != 0) {

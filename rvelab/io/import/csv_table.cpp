@@ -20,14 +20,6 @@ bool may_group_digits(std::string_view cell) {
   return cell.size() == comma + 4 && cell.find_first_not_of("0123456789", comma + 1) == std::string_view::npos;
 }
 
-bool is_number(std::string_view cell) {
-  double value = 0;
-  if (cell.find(',') == std::string_view::npos) return parsed(cell, value);
-  std::string with_point(cell);
-  std::replace(with_point.begin(), with_point.end(), ',', '.');
-  return parsed(std::string_view(with_point), value);
-}
-
 }  // namespace
 
 void split_cells(std::string_view line, char delimiter, const std::string& path, long number,
@@ -66,6 +58,14 @@ void split_cells(std::string_view line, char delimiter, const std::string& path,
     if (end == std::string_view::npos) return;
     begin = delimiter == ' ' ? line.find_first_not_of(" \t", end) : end + 1;
   }
+}
+
+bool CsvTable::is_number(std::string_view cell) {
+  double value = 0;
+  if (cell.find(',') == std::string_view::npos) return parsed(cell, value);
+  std::string with_point(cell);
+  std::replace(with_point.begin(), with_point.end(), ',', '.');
+  return parsed(std::string_view(with_point), value);
 }
 
 CsvTable::CsvTable(const std::string& path) : CsvTable(path, whole_text(path, "a CSV file")) {}

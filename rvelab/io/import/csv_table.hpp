@@ -75,6 +75,8 @@ class CsvTable {
 
   /// Edges of a rectangular cell, m, where the file states them.
   const std::optional<Vector3>& edges() const { return edges_; }
+  /// Whether a cell is a number, with a decimal point or commas.
+  static bool is_number(std::string_view cell);
   /// Whether the columns were named by their number alone.
   bool guessed_columns() const { return guessed_; }
 

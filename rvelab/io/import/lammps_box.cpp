@@ -59,6 +59,12 @@ bool finite_numbers(const std::vector<std::string_view>& words, std::size_t coun
   return true;
 }
 
+void LammpsLines::fail(long line, const std::string& message) const {
+  throw InputError(path_ + ":" + std::to_string(line) + ": " + message);
+}
+
+std::string LammpsLines::shown(std::string_view text) { return keys::shortened(printable(without_blanks(text))); }
+
 ScaledColumns::ScaledColumns(std::vector<std::string>& names, const LammpsBox& box) : box_(box) {
   const auto find = [&](const std::string& name) {
     const auto at = std::find(names.begin(), names.end(), name);

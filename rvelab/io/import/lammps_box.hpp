@@ -1,6 +1,7 @@
-// Boxes of LAMMPS: orthogonal, triclinic, and general triclinic.
+// Common to dumps and data files of LAMMPS: boxes (orthogonal, triclinic, and general triclinic), lines and messages.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,23 @@ void scale_box(LammpsBox& box, double metres);
 
 /// Words as numbers, all of them finite; false if they are not.
 bool finite_numbers(const std::vector<std::string_view>& words, std::size_t count, double* values);
+
+/// The lines of a file as they are read, what they gave so far, and how a line is refused.
+class LammpsLines {
+ protected:
+  LammpsLines(const std::string& path, const Text& text, const TextLines& lines)
+      : path_(path), text_(text), lines_(lines) {}
+  [[noreturn]] void fail(long line, const std::string& message) const;
+  static std::string shown(std::string_view text);
+
+  const std::string again_ = "the file is cut or damaged: write or copy it again";
+  const std::string& path_;
+  Text text_;
+  TextLines lines_;
+  std::map<std::string, long, std::less<>> stated_;  ///< line of each item, or line of a header by its first word
+  std::int64_t count_ = 0;                           ///< atoms, as the file says
+  LammpsAtoms atoms_{};
+};
 
 /// What dumps and data files write besides x, y, z: xu (not wrapped into the box, as any position may be), xs and xsu
 /// (in parts of the box). The names get the usual ones, and rows the usual numbers.

@@ -1,13 +1,9 @@
 // Data files of LAMMPS, as read_data takes them: atom_style sphere. Declared in inputs.hpp.
 #include <algorithm>
-#include <map>
 
-#include "rvelab/error.hpp"
 #include "rvelab/io/import/inputs.hpp"
 #include "rvelab/io/import/lammps_box.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/utf8.hpp"
-#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -20,9 +16,9 @@ bool begins_section(const std::vector<std::string_view>& words) {
   return (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z');
 }
 
-class DataFile {
+class DataFile : LammpsLines {
  public:
-  DataFile(const std::string& path, const Text& text) : path_(path), text_(text), lines_(*text) {}
+  DataFile(const std::string& path, const Text& text) : LammpsLines(path, text, TextLines(*text)) {}
 
   LammpsAtoms read(const Tell& tell) {
     lines_.next();
@@ -53,12 +49,6 @@ class DataFile {
   }
 
  private:
-  [[noreturn]] void fail(long line, const std::string& message) const {
-    throw InputError(path_ + ":" + std::to_string(line) + ": " + message);
-  }
-
-  static std::string shown(std::string_view text) { return keys::shortened(printable(without_blanks(text))); }
-
   /// LAMMPS skips the first line; write_data says its units there.
   void read_title(const Tell& tell) {
     const std::string_view line = lines_.line(), key = "units = ";
@@ -205,21 +195,15 @@ class DataFile {
              again_ + ", or end the line if the number is whole");
   }
 
-  const std::string again_ = "the file is cut or damaged: write or copy it again";
-  const std::string& path_;
-  Text text_;
-  TextLines lines_;
   double metres_ = 1;
   BoxBounds bounds_;
   Matrix3 general_ = Matrix3::Zero();
   Vector3 origin_ = Vector3::Zero();
-  std::map<std::string, long, std::less<>> stated_;  // lines of the header, by their first word
   std::map<std::string_view, std::string_view> labels_;
-  std::int64_t count_ = 0, rows_ = 0;
+  std::int64_t rows_ = 0;
   bool molecules_ = false;
   std::string section_;
   long section_line_ = 0;
-  LammpsAtoms atoms_{};
 };
 
 }  // namespace

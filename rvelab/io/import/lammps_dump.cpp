@@ -1,12 +1,10 @@
 // Dumps of LAMMPS, LIGGGHTS and OVITO: one of the timesteps, whole. Declared in inputs.hpp.
 #include <algorithm>
-#include <map>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import/inputs.hpp"
 #include "rvelab/io/import/lammps_box.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/utf8.hpp"
 #include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
@@ -56,17 +54,16 @@ std::vector<Timestep> frames_of(const std::string& path, std::string_view text) 
 }
 
 /// Reads one timestep and believes nothing that is not whole.
-class FrameReader {
+class FrameReader : LammpsLines {
  public:
   FrameReader(const std::string& path, const Text& text, const Timestep& frame)
-      : path_(path),
-        text_(text),
-        lines_(std::string_view(*text).substr(0, frame.end).substr(frame.begin), frame.line) {}
+      : LammpsLines(path, text,
+                    TextLines(std::string_view(*text).substr(0, frame.end).substr(frame.begin), frame.line)) {}
 
   LammpsAtoms read(double metres) {
     read_items(metres);
     for (const char* needed : {"TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"}) {
-      if (seen_.count(needed) == 0) {
+      if (stated_.count(needed) == 0) {
         fail(lines_.number(), std::string("the timestep has no ITEM: ") + needed +
                                   "; allowed: a whole text dump of LAMMPS; the file is cut, write or copy it again");
       }
@@ -76,12 +73,6 @@ class FrameReader {
   }
 
  private:
-  [[noreturn]] void fail(long line, const std::string& message) const {
-    throw InputError(path_ + ":" + std::to_string(line) + ": " + message);
-  }
-
-  static std::string shown(std::string_view text) { return keys::shortened(printable(without_blanks(text))); }
-
   void read_items(double metres) {
     bool more = lines_.next();
     while (more) {
@@ -95,7 +86,7 @@ class FrameReader {
       const auto is = [&](std::string_view name) {
         const bool found =
             what == name || (what.starts_with(name) && what.size() > name.size() && what[name.size()] == ' ');
-        if (found && !seen_.emplace(name, lines_.number()).second)
+        if (found && !stated_.emplace(name, lines_.number()).second)
           fail(lines_.number(), "ITEM: " + std::string(name) + " stands twice in a timestep; allowed: once");
         return found;
       };
@@ -188,7 +179,7 @@ class FrameReader {
   void read_atoms(std::string_view what, double metres) {
     const long header_line = lines_.number();
     for (const char* needed : {"NUMBER OF ATOMS", "BOX BOUNDS"}) {
-      if (seen_.count(needed) == 0)
+      if (stated_.count(needed) == 0)
         fail(header_line, std::string("the timestep has no ITEM: ") + needed +
                               " before its atoms; allowed: a whole dump; " + again_);
     }
@@ -238,14 +229,6 @@ class FrameReader {
     fail(lines_.number(), "the column " + keys::shortened(name) + " stands twice, here with " + shown(first) + " and " +
                               shown(second) + "; allowed: once, or twice with equal values; dump it once");
   }
-
-  const std::string again_ = "the file is cut or damaged: write or copy it again";
-  const std::string& path_;
-  Text text_;
-  TextLines lines_;
-  std::map<std::string, long, std::less<>> seen_;
-  std::int64_t count_ = 0;
-  LammpsAtoms atoms_{};
 };
 
 LammpsAtoms whole_frame(const std::string& path, const Text& text, const Timestep& frame) {

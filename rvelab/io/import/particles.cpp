@@ -1,7 +1,6 @@
 // Which kind of file holds the particles, and whether they are discs or spheres. Declared in inputs.hpp.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import/inputs.hpp"

@@ -1,7 +1,5 @@
 #include "rvelab/solver/assembly/affine_stiffness.hpp"
 
-#include <cmath>
-
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"

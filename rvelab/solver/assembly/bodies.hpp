@@ -9,8 +9,6 @@
 // Assembly::inverse_inertia the inverse of the body's least moment, or of its scaled one.
 #pragma once
 
-#include <array>
-#include <memory>
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"

@@ -1,8 +1,6 @@
 // What the law of an assembly makes of a contact at an overlap, outside the step kernels.
 #pragma once
 
-#include <cmath>
-
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/assembly/pair_place.hpp"
 

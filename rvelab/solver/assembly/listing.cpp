@@ -2,8 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "rvelab/error.hpp"

@@ -2,7 +2,6 @@
 //
 // Declared in outline.hpp and superellipsoid_rows.hpp.
 #include <algorithm>
-#include <cmath>
 
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/superellipsoid_rows.hpp"

@@ -19,6 +19,5 @@ inline void put_orientation(const Turn& q, double* row) {
   row[12] = q.w;
   for (int k = 0; k < 3; ++k) row[13 + k] = q.v[k];
 }
-inline Turn orientation_in(const double* row) { return {row[12], {row[13], row[14], row[15]}}; }
 
 }  // namespace rvelab

@@ -1,8 +1,6 @@
 // Symmetric matrices of two or three rows, one or one in each lane, and their largest eigenvalues.
 #pragma once
 
-#include <cmath>
-
 #include "rvelab/lanes/vectors.hpp"
 
 namespace rvelab {

@@ -1,7 +1,5 @@
 #include "tools/mpm/app/changes.hpp"
 
-#include <algorithm>
-
 namespace mpm {
 namespace {
 

@@ -1,7 +1,6 @@
 // Contact at points of the surface of bodies. Declared in bodies.hpp.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "tools/mpm/bodies/bodies.hpp"
 #include "tools/mpm/bodies/touching.hpp"

@@ -6,9 +6,19 @@
 
 #include "rvelab/keys/table_reader.hpp"
 #include "tools/mpm/error.hpp"
-#include "tools/mpm/keys/ranges.hpp"
 
 namespace mpm {
+
+/// What numbers of a scene may be, by their units: far beyond what soils, rocks and laboratories have, and so narrow
+/// that products of them (masses, moments of inertia, frequencies) are normal numbers.
+/// least: of what must be positive; most: of the magnitude of all.
+struct Range {
+  const char* unit;  ///< "1" of numbers without one
+  double least, most;
+};
+
+/// Of a key, whose name ends with its unit: young_modulus_Pa.
+Range range_of(const std::string& key);
 
 /// One table. A wrong value ends the reading at once. A required key that is not there is reported by finish(), with
 /// the keys that are unknown (its value is 0, empty or not a number until then): a misspelt one is thus among them.
@@ -18,7 +28,7 @@ class Keys {
   Keys(const toml::table& table, std::string path, std::string where);
 
   bool has(const std::string& name) const { return reader_.has(name); }
-  /// All numbers lie within the range of their unit (ranges.hpp), those of `least` and `most` too.
+  /// All numbers lie within the range of their unit (ranges.cpp), those of `least` and `most` too.
   double number(const std::string& name, double initial, double least = -1e300, double most = 1e300);
   double number(const std::string& name);    ///< required
   double positive(const std::string& name);  ///< required, above 0

@@ -1,4 +1,5 @@
-#include "tools/mpm/keys/ranges.hpp"
+// The ranges of units. Declared in keys.hpp.
+#include "tools/mpm/keys/keys.hpp"
 
 namespace mpm {
 namespace {

@@ -1,7 +1,6 @@
 #include "tools/mpm/output/checkpoint.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 

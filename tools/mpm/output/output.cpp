@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <span>
-#include <sstream>
 
 #include "rvelab/io/crc32c.hpp"
 #include "rvelab/io/publish.hpp"

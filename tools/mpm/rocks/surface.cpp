@@ -6,7 +6,6 @@
 // u: velocity of the soil at a point of the surface less that of the rock there, r from the centre of the rock. J n >=
 // 0 and |J_t| <= mu J_n; where it slides, J_n is that with which the soil does not enter: no stiffness, no time step.
 #include <algorithm>
-#include <cmath>
 
 #include "tools/mpm/rocks/rocks.hpp"
 

@@ -1,5 +1,4 @@
 // What rocks touch that is no rock: planes, prescribed bodies, plates. Declared in rocks.hpp.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "tools/mpm/grid/point.hpp"
 #include "tools/mpm/scene/plates.hpp"
@@ -92,17 +91,21 @@ double memory_of(const Scene& scene, double points, double nodes) {
   return 1e-9 * (points * (point + 2 * sizeof(long)) + nodes * (plane ? sizeof(Node<2>) : sizeof(Node<3>)));
 }
 
+/// m, along an axis, of the box that holds all regions.
+double extent(const Scene& scene, std::size_t axis) {
+  double lowest = 1e300, highest = -1e300;
+  for (const auto& region : scene.regions) {
+    lowest = std::min(lowest, region.lower[axis]);
+    highest = std::max(highest, region.upper[axis]);
+  }
+  return highest - lowest;
+}
+
 /// Of the box that holds all regions, with four to each side.
 double nodes_of(const Scene& scene) {
   double nodes = scene.regions.empty() ? 0 : 1;
-  for (std::size_t i = 0; i < scene.cell.size() && nodes > 0; ++i) {
-    double lowest = 1e300, highest = -1e300;
-    for (const auto& region : scene.regions) {
-      lowest = std::min(lowest, region.lower[i]);
-      highest = std::max(highest, region.upper[i]);
-    }
-    nodes *= std::ceil((highest - lowest) / scene.cell[i]) + 9;
-  }
+  for (std::size_t i = 0; i < scene.cell.size() && nodes > 0; ++i)
+    nodes *= std::ceil(extent(scene, i) / scene.cell[i]) + 9;
   return nodes;
 }
 
@@ -329,12 +332,7 @@ void check_shaking(const Scene& scene, const std::string& material, double modul
     now += 0.5 * (record.values[k] + record.values[k - 1]) * (record.times[k] - record.times[k - 1]);
     speed = std::max(speed, std::abs(now));
   }
-  double lowest = 1e300, highest = -1e300;
-  for (const auto& region : scene.regions) {
-    lowest = std::min(lowest, region.lower[std::size_t(shaking.axis)]);
-    highest = std::max(highest, region.upper[std::size_t(shaking.axis)]);
-  }
-  const double pressure = density * largest * (highest - lowest);
+  const double pressure = density * largest * extent(scene, std::size_t(shaking.axis));
   if (!(speed > fastest && pressure > largest_strain * modulus)) return;
   throw InputError(std::string("loads.shaking.") + (record.times.empty() ? "velocity_m_s" : "record") +
                    ": it moves the box at up to " + in_words(speed) + " m/s, and waves in material " + material +
@@ -362,16 +360,9 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
     refuse_pressure("body." + body.name + ".pressure_Pa", in_words(most), most);
   }
   const auto moving = all_moving(scene);
-  for (std::size_t i = 0; i < scene.cell.size(); ++i) {
-    double lowest = 1e300, highest = -1e300;
-    for (const auto& region : scene.regions) {
-      lowest = std::min(lowest, region.lower[i]);
-      highest = std::max(highest, region.upper[i]);
-    }
-    // Soil that nothing holds falls without being pressed.
-    if (scene.planes.empty() && scene.bodies.empty()) break;
-    refuse_pressure("loads.gravity_m_s2", in_words(scene.gravity), density * scene.gravity[i] * (highest - lowest));
-  }
+  // Soil that nothing holds falls without being pressed.
+  for (std::size_t i = 0; i < scene.cell.size() && !(scene.planes.empty() && scene.bodies.empty()); ++i)
+    refuse_pressure("loads.gravity_m_s2", in_words(scene.gravity), density * scene.gravity[i] * extent(scene, i));
   for (const auto& strip : scene.loads.strips) {
     refuse_pressure("loads.strip.half_sine_Pa", in_words(strip.peak), strip.peak);
     for (const double each : strip.history.values) refuse_pressure("loads.strip.history", in_words(each), each);

@@ -1,7 +1,6 @@
 #include "tools/mpm/scene/rocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "rvelab/grains/mesh.hpp"

@@ -1,7 +1,6 @@
 #include "tools/mpm/setup/rocks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "tools/mpm/scene/checks.hpp"

@@ -79,16 +79,13 @@ void Solver<D>::stresses(double dt) {
   const double begin = wall_seconds();
   for (auto& group : groups) group.material->advance(points.data() + group.first, group.count, dt, workers);
   material_seconds += wall_seconds() - begin;
-  const long n = long(points.size());
-  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-    for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
-      auto& point = points[k];
-      const Mat<D> dH = finite_increment<D>(point.gradient);
-      point.strain += 0.5 * (dH + dH.transpose());
-      point.volume *= (Mat<D>::Identity() + dH).determinant();
-      point.F = (point.F + dH * point.F).eval();
-      point.work += 0.5 * point.volume * point.stress.cwiseProduct(point.gradient).sum();
-    }
+  over(long(points.size()), [&](long k) {
+    auto& point = points[k];
+    const Mat<D> dH = finite_increment<D>(point.gradient);
+    point.strain += 0.5 * (dH + dH.transpose());
+    point.volume *= (Mat<D>::Identity() + dH).determinant();
+    point.F = (point.F + dH * point.F).eval();
+    point.work += 0.5 * point.volume * point.stress.cwiseProduct(point.gradient).sum();
   });
 }
 

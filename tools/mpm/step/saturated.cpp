@@ -84,13 +84,9 @@ void Solver<D>::predict_velocities(double dt) {
   for (const auto& mirror : planes.mirror_nodes()) water.folded_drag[mirror.image] += water.drag[mirror.node];
   water.mobility.assign(grid.nodes.size() * D, Mobility{-1, 0, 0});
   const auto each_node = [&](const auto& work) {
-    const long n = long(grid.nodes.size());
-    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-      for (long at = piece * chunk; at < std::min(n, long(piece + 1) * chunk); ++at) {
-        auto& s = grid.nodes[at];
-        auto& f = water.grid.nodes[at];
-        if (s.mass > 0 && !planes.is_mirror(at)) work(at, s, f);
-      }
+    over(long(grid.nodes.size()), [&](long at) {
+      auto& s = grid.nodes[at];
+      if (s.mass > 0 && !planes.is_mirror(at)) work(at, s, water.grid.nodes[at]);
     });
   };
   each_node([&](long at, auto& s, auto& f) {
@@ -148,17 +144,14 @@ void Solver<D>::hold_velocities(double dt) {
 template <int D>
 void Solver<D>::correct_velocities(const std::vector<double>& dp, double dt) {
   auto& water = *fluid;
-  const long n = long(grid.nodes.size());
-  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-    for (long at = piece * chunk; at < std::min(n, long(piece + 1) * chunk); ++at) {
-      if (!water.pressure.reaches(at) || water.mobility[at * D].solid < 0) continue;
-      double solid[D], fluid_force[D];
-      water.pressure.force(grid, at, dp, true, solid, fluid_force);
-      for (int i = 0; i < D; ++i) {
-        const auto& m = water.mobility[at * D + i];
-        grid.nodes[at].w[i] += dt * (m.solid * solid[i] + m.both * fluid_force[i]);
-        water.grid.nodes[at].w[i] += dt * (m.both * solid[i] + m.fluid * fluid_force[i]);
-      }
+  over(long(grid.nodes.size()), [&](long at) {
+    if (!water.pressure.reaches(at) || water.mobility[at * D].solid < 0) return;
+    double solid[D], fluid_force[D];
+    water.pressure.force(grid, at, dp, true, solid, fluid_force);
+    for (int i = 0; i < D; ++i) {
+      const auto& m = water.mobility[at * D + i];
+      grid.nodes[at].w[i] += dt * (m.solid * solid[i] + m.both * fluid_force[i]);
+      water.grid.nodes[at].w[i] += dt * (m.both * solid[i] + m.fluid * fluid_force[i]);
     }
   });
   planes.set_end(grid, time + dt);
@@ -248,7 +241,7 @@ template <int D>
 void Solver<D>::move_water(double dt) {
   auto& water = *fluid;
   const double pic = options.pic_fraction;
-  over_points([&](long k) {
+  over(long(points.size()), [&](long k) {
     auto& here = water.points[k];
     if (here.mass == 0) return;
     Taken<D> taken;

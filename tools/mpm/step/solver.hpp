@@ -146,22 +146,18 @@ class Solver {
       });
     }
   }
+  /// work(k) for k < n in parallel.
+  template <class Work>
+  void over(long n, const Work& work) {
+    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+      for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) work(k);
+    });
+  }
   /// work(node) for each node with mass.
   template <class Work>
   void over_nodes(Grid<D>& of, const Work& work) {
-    const long n = long(of.nodes.size());
-    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-      for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
-        if (of.nodes[k].mass > 0) work(of.nodes[k]);
-      }
-    });
-  }
-  /// work(point) in parallel, where points are written alone.
-  template <class Work>
-  void over_points(const Work& work) {
-    const long n = long(points.size());
-    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-      for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) work(k);
+    over(long(of.nodes.size()), [&](long k) {
+      if (of.nodes[k].mass > 0) work(of.nodes[k]);
     });
   }
 
