@@ -84,7 +84,7 @@ PARTS = [
     Part("karlsruhe", 40, "a published sand fitted on three tests and predicted in three"),
     Part("sand", 40, "the recipe of a published sand beside eight tests: five specimens of 1,000 grains"),
     Part("sand_variants", 10, "rough contacts, and clumps, agitated as that recipe, beside its drained tests"),
-    Part("ottawa", 60, "cycles to liquefaction of a second sand, predicted from its limits of density, critical angle and G0"),
+    Part("ottawa", 10, "cycles to liquefaction of a second sand, predicted from its limits of density, critical angle and G0"),
     Part("sheet", 20, "data sheets of two sands by the quick plan, beside published numbers"),
     Part("study", 5, "errors and their estimates over the tolerances", "check studies $work/study tolerance"),
     Part("studies", 60, "studies of scale: space, number of grains, stiffness over pressure; and of damping"),
