@@ -159,6 +159,8 @@ void run_inspect(const std::string& path, bool as_json) {
       listing.add("seed", origin->seed);
       listing.add("draw", origin->draw);
       listing.add("preparation_friction", origin->preparation_friction);
+      if (origin->expansion) listing.add("expansion", *origin->expansion);
+      if (origin->strain_difference) listing.add("strain_difference", *origin->strain_difference);
       sizes = sizes_asked_by(*origin, path);
     }
   }

@@ -12,12 +12,12 @@
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/grading_sizes.hpp"
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/packing_file.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/warnings.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/plausible.hpp"
@@ -113,9 +113,8 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files, std
   const pack::Packing packing = pack::pack(job.what.recipe, workers, watch);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   job.made = summary_of(job, packing, seconds.count());
-  const io::SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
   const std::lock_guard lock(files);
-  io::write_specimen(packing.specimen, job.file, &origin);
+  write_packing(packing, job.what, job.file);
   ++written;
 }
 

@@ -10,6 +10,7 @@
 
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/packing_file.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/sharing.hpp"
 #include "rvelab/cli/warnings.hpp"
@@ -105,9 +106,7 @@ PackState packed(const SheetSpecimen& specimen, TerminalLine& line, std::string&
     if (fs::exists(specimen.file)) return PackState::there;
     const auto packing = packing_of(specimen, line, failure);
     if (!packing) return failure.empty() ? PackState::open : PackState::failed;
-    const io::SpecimenOrigin origin{specimen.recipe.resolved, specimen.seed, packing->draw,
-                                    packing->preparation_friction};
-    io::write_specimen(packing->specimen, specimen.file, &origin);
+    write_packing(*packing, specimen.recipe, specimen.file);
     return PackState::there;
   } catch (const io::Busy&) {
     return PackState::elsewhere;

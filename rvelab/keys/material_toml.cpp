@@ -43,6 +43,30 @@ void expect_unit(const Specimen& specimen, const std::string& dotted, const KeyE
                    "; allowed: " + instead + "; use that key");
 }
 
+bool is_from_command_line(const toml::node& value) { return key_error(value.source(), "").assigned; }
+
+/// What is wrong with a key of a material that the law of all contacts does not read; "" if nothing is.
+std::string not_read(const Law law, const std::string& dotted) {
+  const std::string key = dotted.substr(dotted.rfind('.') + 1), laws = laws_that_read(key);
+  Specimen any;
+  any.contact.law = law;
+  if (!dotted.starts_with("material.") || laws.empty() || !key_in_use(any, key).empty()) return "";
+  return dotted + " does not go with contact.law = " + name(law) + ", which does not read it; allowed: with " + laws +
+         "; remove the key, or set contact.law";
+}
+
+/// Of one table, and those in it.
+void expect_keys_of_law(const std::string& name, const toml::table& table, Law law, bool only_assigned,
+                        std::vector<KeyError>& errors) {
+  for (const auto& [key, value] : table) {
+    const std::string dotted = name + "." + std::string(key.str());
+    if (const toml::table* inner = value.as_table()) expect_keys_of_law(dotted, *inner, law, only_assigned, errors);
+    if (only_assigned && !is_from_command_line(value)) continue;
+    if (const std::string wrong = not_read(law, dotted); !wrong.empty())
+      errors.push_back(key_error(place_of(key, value), wrong));
+  }
+}
+
 /// "material.sand.friction" into {"material.friction", "sand"}; other keys have no middle.
 std::pair<std::string, std::string> without_material_name(const std::string& dotted) {
   const auto first = dotted.find('.'), last = dotted.rfind('.');
@@ -142,6 +166,13 @@ std::string near_key(const std::string& dotted_key) {
 
 }  // namespace
 
+std::string laws_that_read(const std::string& name) {
+  return names_where<Law>([&](Law law) {
+    return std::any_of(law_parameters().begin(), law_parameters().end(),
+                       [&](const LawParameter& each) { return each.law == law && each.parameter.key == name; });
+  });
+}
+
 std::string key_in_use(const Specimen& specimen, const std::string& name) {
   for (const LawParameter& asked : law_parameters())
     for (const LawParameter& read : law_parameters())
@@ -194,10 +225,8 @@ std::vector<std::string> unusual_materials(const ContactModel& model, const std:
   std::vector<std::string> found;
   for (const KeyEntry& entry : key_entries()) {
     const Key& key = entry.key;
-    const std::string in_use = key_in_use(any, key.name);
-    const bool of_law = std::any_of(law_parameters().begin(), law_parameters().end(),
-                                    [&](const LawParameter& each) { return each.parameter.key == key.name; });
-    if (key.table != "material" || entry.as_tangent || (of_law && in_use != key.name)) continue;
+    const bool of_other_law = !laws_that_read(key.name).empty() && key_in_use(any, key.name) != key.name;
+    if (key.table != "material" || entry.as_tangent || of_other_law) continue;
     for (const Material& material : materials) {
       std::string unusual;
       with_field(entry, any, material, [&](const auto& field) {
@@ -226,13 +255,18 @@ void set_key(Specimen& specimen, const std::string& assignment) {
 
 void set_keys(Specimen& specimen, const std::vector<std::string>& assignments) {
   std::string mistakes;
+  const auto add = [&](const std::string& mistake) { mistakes += (mistakes.empty() ? "" : "\n") + mistake; };
   for (const auto& assignment : assignments) {
     try {
       set_key(specimen, assignment);
     } catch (const InputError& error) {
-      mistakes += (mistakes.empty() ? "" : "\n") + std::string(error.what());
+      add(error.what());
     }
   }
+  for (const auto& assignment : assignments)
+    if (const auto wrong = not_read(specimen.contact.law, trimmed(assignment.substr(0, assignment.find('='))));
+        !wrong.empty())
+      add(wrong);
   if (!mistakes.empty()) throw InputError(mistakes);
 }
 
@@ -272,6 +306,20 @@ void read_material_tables(const toml::table& file, Specimen& specimen, std::vect
       read_table(specimen, name, *node->as_table(), errors);
     }
   }
+  expect_keys_of_law(file, specimen, errors);
+}
+
+void expect_keys_of_law(const toml::table& file, const Specimen& specimen, std::vector<KeyError>& errors) {
+  const toml::node* law = file["contact"]["law"].node();
+  const bool only_assigned = law != nullptr && is_from_command_line(*law);
+  const auto expect = [&](const toml::node& node) {
+    if (const toml::table* table = node.as_table())
+      expect_keys_of_law("material", *table, specimen.contact.law, only_assigned, errors);
+  };
+  const toml::node* materials = file.get("material");
+  if (materials == nullptr) return;
+  expect(*materials);
+  if (const toml::array* list = materials->as_array()) std::for_each(list->begin(), list->end(), expect);
 }
 
 void expect_material_tables(const toml::table& file, std::vector<KeyError>& errors) {

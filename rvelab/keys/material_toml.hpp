@@ -32,7 +32,8 @@ std::vector<std::string> unusual_materials(const ContactModel& model, const std:
 /// taken as a string, so that words need no quotation marks.
 void set_key(Specimen& specimen, const std::string& assignment);
 
-/// All assignments in order. Throws InputError with every mistake, one line each, when the others have been made.
+/// All assignments in order. Throws InputError with every mistake, one line each, when the others have been made; a key
+/// that the law in the end does not read is one.
 void set_keys(Specimen& specimen, const std::vector<std::string>& assignments);
 
 /// Reads one table. Every mistake is added to `errors` with its line and the reading goes on. For "material" the keys
@@ -40,12 +41,17 @@ void set_keys(Specimen& specimen, const std::vector<std::string>& assignments);
 /// law says which unit a normal stiffness has.
 void read_table(Specimen& specimen, const std::string& name, const toml::table& table, std::vector<KeyError>& errors);
 
-/// Reads what there is of [[material]] (or one [material]), [contact], [damping] and [solver] in a file; what else it
-/// holds is the caller's. Mistakes as in read_table.
+/// Reads what there is of [[material]] (or one [material]), [contact], [damping] and [solver] in a file, and expects
+/// keys of the law; what else it holds is the caller's. Mistakes as in read_table.
 void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors);
 
 /// The file holds these tables and nothing else. Mistakes as in read_table.
 void expect_material_tables(const toml::table& file, std::vector<KeyError>& errors);
+
+/// Each law's own key of a material, among those tables of a file, is one that the law of the specimen reads: they have
+/// been read into it. If --set gave the law, only keys of --set are checked: the file was written for another law.
+/// Mistakes as in read_table.
+void expect_keys_of_law(const toml::table& file, const Specimen& specimen, std::vector<KeyError>& errors);
 
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
 void read_material_file(const std::string& path, Specimen& specimen);
@@ -74,6 +80,9 @@ auto with_field(const KeyEntry& entry, AnySpecimen& specimen, AnyMaterial& mater
       },
       entry.target);
 }
+
+/// The laws whose own key of a material this is, "hertz_mindlin, cones"; "" if it is no law's own.
+std::string laws_that_read(const std::string& name);
 
 /// Keys may share a field and not its unit: the one of them that the law, or the dashpot, reads; "" if it reads none.
 std::string key_in_use(const Specimen& specimen, const std::string& name);

@@ -17,6 +17,7 @@ bool in_use(const Specimen& specimen, const KeyEntry& entry) {
   if (entry.as_tangent) return false;  // said by friction
   const std::string read = key_in_use(specimen, entry.key.name);
   if (!read.empty()) return entry.key.name == read;
+  if (!laws_that_read(entry.key.name).empty()) return false;
   const auto& all = key_entries();
   const auto first =
       std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.target == entry.target; });
@@ -85,6 +86,7 @@ void set_parameters(Specimen& specimen, const std::string& text) {
     if (const toml::array* list = node->as_array())
       for (const toml::node& item : *list) read_listed(changed, item, errors);
   }
+  expect_keys_of_law(file, changed, errors);
   raise(path, errors);
   try {
     check_parameters(changed.contact, changed.damping, changed.materials);

@@ -220,6 +220,21 @@ void read_grains(const toml::table& file, Recipe& recipe, bool ellipsoids, toml:
   resolved.insert("grains", list);
 }
 
+/// A law of --set leaves the keys of the file's law in a material: the recipe that makes the specimen again, and the
+/// specimen, have none of them.
+void leave_out_unread(toml::node& materials, const Specimen& specimen) {
+  if (toml::array* list = materials.as_array())
+    for (toml::node& each : *list) leave_out_unread(each, specimen);
+  toml::table* table = materials.as_table();
+  if (table == nullptr) return;
+  std::vector<std::string> unread;
+  for (const auto& [key, value] : *table) {
+    const std::string name(key.str());
+    if (!keys::laws_that_read(name).empty() && keys::key_in_use(specimen, name).empty()) unread.push_back(name);
+  }
+  for (const std::string& name : unread) table->erase(name);
+}
+
 /// Materials, contact model, damping and solver.
 void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
   Specimen specimen;
@@ -229,6 +244,9 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   if (!file.contains("material"))
     errors.push_back({0, "the recipe has no material; allowed: [[material]] with its keys below; add it"});
   read_material_tables(file, specimen, errors);
+  for (const LawParameter& each : law_parameters())
+    if (keys::key_in_use(specimen, each.parameter.key).empty())
+      for (Material& material : specimen.materials) material.*each.value = 0;
   if (specimen.materials.empty()) specimen.materials = {Material{}};
   recipe.materials = specimen.materials;
   recipe.contact = specimen.contact;
@@ -244,6 +262,7 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   for (const char* name : {"contact", "damping", "solver", "material"}) {
     if (const toml::node* node = file.get(name)) resolved.insert(name, *node);
   }
+  if (toml::node* node = resolved.get("material")) leave_out_unread(*node, specimen);
 }
 
 /// Whether its grains are many enough, can carry its largest pressure, and are likely to be meant for it.

@@ -179,6 +179,7 @@ void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
   for (const char* name : override_tables) {
     if (const toml::table* table = file[name].as_table()) read_table(any, name, *table, errors);
   }
+  if (file["contact"]["law"]) expect_keys_of_law(file, any, errors);
 }
 
 /// `then` names stages that are there. `tables`: those that the stages were read from, one each.
@@ -311,6 +312,7 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
   for (const char* name : override_tables) {
     if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
   }
+  expect_keys_of_law(protocol.overrides, specimen, errors);
   raise(protocol.path, errors);
   expect_fits(protocol, specimen);
   try {

@@ -92,6 +92,7 @@ TEST_CASE("parameters that cannot be are refused by key, value and line; state, 
                {"[[material]]\nfriction = 0.5", "name"},
                {"[stage]\nkind = \"relax\"", "[stage]"},
                {"material.friction 0.5", "parameters:1"},
+               {"material.roughness_m = 1e-7", "roughness_m does not go with contact.law = linear"},
                {"contact.law = \"hertz_mindlin\"", "young_modulus"}};  // a law without its modulus
   for (const auto& each : wrong) {
     INFO(each.text);

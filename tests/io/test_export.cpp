@@ -74,12 +74,8 @@ TEST_CASE("every parameter goes through the material file, whatever law and dash
       specimen.solver.energy_balance = true;
       specimen.materials.resize(2);
       for (auto& material : specimen.materials) {
-        const bool given = law == Law::linear_stiffness || law == Law::hertz_stiffness;
-        (given ? material.normal_stiffness : material.young_modulus) = 7e8 / 3;
-        material.tangential_stiffness = 1.0 / 3;
-        material.poisson_ratio = 0.3;
-        if (law == Law::hertz_rough) material.roughness = 1e-6 / 3;
-        if (law == Law::cones) material.cone_slope = std::tan(0.1);
+        for (const LawParameter& each : law_parameters())  // others go with no key of this law
+          if (each.law == law) material.*each.value = 1.0 / 3;
         material.friction = std::tan(0.4);
       }
       specimen.materials[1].name = "grès \"fin\"";

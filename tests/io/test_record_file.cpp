@@ -124,10 +124,10 @@ TEST_CASE("the manual lists exactly the datasets of a file, with their types, sh
            name.starts_with("/grains/exponent_") || name == "/state/list/orientations";
   });
   REQUIRE(of_bodies == 15);
-  const io::SpecimenOrigin origin{"recipe", 1, 2, 0.5};
+  const io::SpecimenOrigin origin{"recipe", 1, 2, 0.5, 0.01, 0.0};
   io::write_specimen(random_bits(8), folder / "packed.h5", &origin);
   for (const auto& entry : io::Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
-  CHECK(found.size() == of_a_specimen + 6);
+  CHECK(found.size() == of_a_specimen + 8);
   std::size_t states = 0;
   for (const auto& entry : io::Hdf5File::open(folder / "r.h5").entries()) {
     const std::string snapshot_group = "/snapshots/000012";

@@ -86,6 +86,15 @@ TEST_CASE("how a specimen was packed comes back from its file, and changes nothi
   CHECK(read->seed == origin.seed);
   CHECK(read->draw == origin.draw);
   CHECK(read->preparation_friction == origin.preparation_friction);
+  CHECK(!read->expansion);  // as of files written before it was stored
+  CHECK(!read->strain_difference);
+  io::SpecimenOrigin agitated = origin;
+  agitated.expansion = 0.0057;
+  agitated.strain_difference = -0.25;
+  io::write_specimen(written, folder / "agitated.h5", &agitated);
+  CHECK(io::read_origin(folder / "agitated.h5")->expansion == 0.0057);
+  CHECK(io::read_origin(folder / "agitated.h5")->strain_difference == -0.25);
+  CHECK(!io::compare_files(folder / "packed.h5", folder / "agitated.h5").difference);
   CHECK(differences(written, io::read_specimen(folder / "packed.h5")) == 0);
   CHECK(!io::read_origin(folder / "plain.h5"));
   CHECK_THAT(input_error([&] { io::read_origin(folder / "none.h5"); }), Contains("no such file"));

@@ -147,6 +147,40 @@ TEST_CASE("a stiffness in the unit of another law is refused") {
              Contains("viscoelastic_1_m_s"));
 }
 
+TEST_CASE("a key of a material that belongs to another contact law is refused, with the laws that read it") {
+  const std::string rough =
+      "[[material]]\nname = \"sand\"\nyoung_modulus_Pa = 7e10\npoisson_ratio = 0.2\nroughness_m = 3e-7\n";
+  Specimen s;
+  CHECK_THAT(read_file(rough + "[contact]\nlaw = \"hertz_mindlin\"\n", s),
+             Contains("m.toml:5: material.roughness_m does not go with contact.law = hertz_mindlin") &&
+                 Contains("allowed: with hertz_rough; remove the key, or set contact.law"));
+  CHECK(read_file(rough + "[contact]\nlaw = \"hertz_rough\"\n", s).empty());
+  CHECK_THAT(read_file("[[material]]\nstiffness_ratio = 0.5\n[contact]\nlaw = \"cones\"\n", s),
+             Contains("m.toml:2: material.stiffness_ratio") && Contains("linear"));
+
+  // Assignments, in whatever order the law comes.
+  s = two_materials();
+  keys::set_keys(s, {"material.gravel.roughness_m=1e-7", "contact.law=hertz_rough"});
+  CHECK(s.materials[1].roughness == 1e-7);
+  CHECK_THAT(input_error([&] {
+               keys::set_keys(s, {"contact.law=cones", "material.gravel.roughness_m=1e-7"});
+             }),
+             Contains("material.gravel.roughness_m") && Contains("cones") && Contains("hertz_rough"));
+
+  // Over a file of another law the command line sets the law: keys of the file are not those of the command line.
+  const auto mistakes = [](const std::string& key) {
+    toml::table file = keys::parse_toml_text(
+        "[contact]\nlaw = \"linear\"\n[[material]]\nname = \"sand\"\nstiffness_ratio = 0.5\n", "m.toml");
+    std::vector<keys::KeyError> errors;
+    keys::assign_all(file, {"contact.law=hertz_mindlin", "material.sand." + key}, errors);
+    Specimen specimen;
+    keys::read_material_tables(file, specimen, errors);
+    return errors.size();
+  };
+  CHECK(mistakes("poisson_ratio=0.2") == 0);
+  CHECK(mistakes("cone_slope=0.1") == 1);
+}
+
 TEST_CASE("a material file sets what it says, in whatever order its tables come") {
   Specimen s;
   CHECK(read_file("[[material]]\nname = \"sand\"\nnormal_stiffness_N_m1_5 = 20000000\nfriction = 0.3\n"

@@ -142,6 +142,18 @@ TEST_CASE("a recipe of ellipses says their aspect ratios and bedding") {
   CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
 }
 
+TEST_CASE("a law of --set leaves out what the law of the file reads, so that the recipe in the specimen is one") {
+  const std::string linear = small + std::string("stiffness_ratio = 0.5\n");
+  const pack::RecipeFile file =
+      pack::parse_recipe(linear, "r.toml", {"contact.law=hertz_mindlin", "material.poisson_ratio=0.2"});
+  CHECK(file.recipe.materials[0].stiffness_ratio == 0);
+  CHECK(file.recipe.materials[0].young_modulus > 0);
+  CHECK(file.resolved.find("stiffness_ratio") == std::string::npos);
+  CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+  CHECK_THAT(message_of(linear, {"contact.law=hertz_mindlin", "material.stiffness_ratio=1"}),
+             Contains("material.stiffness_ratio does not go with contact.law = hertz_mindlin"));
+}
+
 TEST_CASE("porosity and void ratio say the same") {
   const auto with = [](const std::string& assignment) {
     return *pack::parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;

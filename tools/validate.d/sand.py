@@ -12,18 +12,34 @@ the stress, within 15 % of the largest strain. Undrained tests, whose densities 
 density whose mean curve has the least p that was measured, q there and at the end of the measured curve within 20 %, and the sign of the
 change of p."""
 
+import functools
 import pathlib
 import tomllib
 
 import numpy as np
 
 import harness
-from harness import PROTOCOLS, in_turn, in_words, once, records, results, sets, verdict, words, work
+from harness import PROTOCOLS, bars, in_turn, in_words, once, records, results, sets, verdict, words, work
 
-FIT = pathlib.Path(words[0]) if words else PROTOCOLS / "fits/karlsruhe_agitated.toml"
-COUNT = int(words[1]) if len(words) > 1 else 5
-GRAINS = int(words[2]) if len(words) > 2 else 1000
-RECIPE = [f"pack.number={GRAINS}", *words[3:]]
+# By what the recipe as it is misses a limit, by the first words of a row.
+CONTACTS = ("contacts do not follow from one expansion: with preparation.expansion=0.012 E50 of TMD7 is 15 MPa and all of its q are within "
+            "their limits (three specimens of 500 grains)")
+ELASTIC = ("E is a tenth of that of quartz, so that too much of the strain is elastic; stiffer contacts make q of drained tests "
+           "at 0.5 to 2 % too high")
+CONTRACTION = "at no density do spheres contract as the sand does and dilate as much then: least p and last q ask for two densities"
+REASONS = {
+    "TMD2   fitted     E50": CONTACTS, "TMD7   predicted  E50": CONTACTS, "TMD7   predicted  q at": CONTACTS,
+    "TMD7   predicted  eps_v": CONTACTS, "OE": ELASTIC, "TMU": CONTRACTION,
+    "TMD22  fitted     largest": "a compromise of friction and the map of densities: TMD2 is 4 % too strong already",
+    "TMD22  fitted     strain": "follows from the largest q: the sand has 95 % of that of the model at 2.53 %",
+    "TMD24  predicted  strain": "q at 2 % is 8 % too high and the largest 3 % too low, both within their limits: so 95 % of it comes early"}
+
+asked = [] if words[:1] == ["--judge"] else words
+FIT = pathlib.Path(asked[0]) if asked else PROTOCOLS / "fits/karlsruhe_agitated.toml"
+COUNT = int(asked[1]) if len(asked) > 1 else 5
+GRAINS = int(asked[2]) if len(asked) > 2 else 1000
+SOIL = PROTOCOLS / "soils/karlsruhe.toml"
+RECIPE = [f"pack.number={GRAINS}", *asked[3:]]
 LOOSEST = {"OE1": ["preparation.max_draws=400"]}  # a relative density of 0.04
 UNDRAINED = {"TMU2": (200e3, [0.2, 0.4, 0.6]), "TMU6": (200e3, [0.6, 0.75, 0.9])}  # Pa, relative densities tried
 OF_UNDRAINED = ["pack.number=500"]  # and three specimens
@@ -36,14 +52,14 @@ def measured(name):
     return dict(zip(rows[0].split(","), values))
 
 
-def tests(protocol, name, pressure, density, settings, count=COUNT, more=()):
+def tests(protocol, name, pressure, density, settings, count=COUNT, more=(), soil=SOIL, folder=work):
     """Record files of specimens."""
     recipe = sets(f"target.relative_density={density:.4f}", f"target.pressure_Pa={pressure}", *RECIPE, *more)
 
     def one(seed):
-        specimen = once(work / f"{name}_{seed}.h5", "pack", PROTOCOLS / "soils/karlsruhe.toml", *recipe,
+        specimen = once(folder / f"{name}_{seed}.h5", "pack", soil, *recipe,
                         *sets(*LOOSEST.get(name, []), f"pack.seed={seed}"))
-        return once(work / f"{name}_{seed}_R.h5", "run", protocol, "--specimen", specimen,
+        return once(folder / f"{name}_{seed}_R.h5", "run", protocol, "--specimen", specimen,
                     *sets(f"test.pressure_Pa={pressure}", *settings), "--threads", 1, codes=None)
     return list(in_turn(one, range(1, count + 1)))
 
@@ -90,21 +106,45 @@ def bar_of(name, sand):
     return 0.7, "0.7"
 
 
-def drained(test, role):
+def reason_of(what):
+    return next((reason for start, reason in REASONS.items() if what.startswith(start)), "")
+
+
+def compared(test, **recipe):
+    """Curves of the sand and of each specimen; of each feature: name, sand's, that of the mean curve, standard error."""
     curve = measured(test["curve"])
     strain, q, eps_v = curve["axial_strain_percent"] / 100, curve["deviator_kPa"], curve["volumetric_strain_percent"] / 100
     keep = strain <= test["to"] / 100
     sand = features(strain[keep], q[keep], eps_v[keep])
-    paths = tests("triaxial", test["name"], test["pressure_Pa"], density_of(test), test["settings"])
+    paths = tests("triaxial", test["name"], test["pressure_Pa"], density_of(test), test["settings"], **recipe)
     at, *mean = mean_of([sheared(path) for path in paths], np.arange(0, test["to"] / 100 + 1e-9, 5e-4))
     model = features(at, mean[0].mean(axis=0), mean[2].mean(axis=0))
-    single = [features(at, mean[0][k], mean[2][k]) for k in range(COUNT)]
-    for name, value in sand.items():
-        error = np.std([each[name] for each in single], ddof=1) / COUNT ** 0.5
-        bar, asked = bar_of(name, sand)
-        verdict(f"{test['name']:<6} {role:<10} {name}", f"{value:8.3g} {model[name]:8.3g} +- {error:<7.2g}", asked,
-                abs(model[name] - value) <= bar, width=46)
-    return test["name"], (strain, q, eps_v), (at, mean[0], mean[2])
+    single = [features(at, *each) for each in zip(mean[0], mean[2])]
+    return (strain, q, eps_v), (at, mean[0], mean[2]), [
+        (name, value, model[name], np.std([each[name] for each in single], ddof=1) / len(single) ** 0.5)
+        for name, value in sand.items()]
+
+
+def within(name, found):
+    """Whether a feature meets its limit, and the limit in words; found: rows of compared()."""
+    sand = {each: value for each, value, *_ in found}
+    bar, limit = bar_of(name, sand)
+    model = next(value for each, _, value, _ in found if each == name)
+    return abs(model - sand[name]) <= bar, limit
+
+
+@bars
+def drained(name, role, found):
+    for what, value, model, error in found:
+        met, limit = within(what, found)
+        what = f"{name:<6} {role:<10} {what}"
+        verdict(what, f"{value:8.3g} {model:8.3g} +- {error:<7.2g}", limit, met, width=46, reason=reason_of(what))
+
+
+@bars
+def differs(what, value, model, limit, allowed, text):
+    """A row of one figure beside that of the sand."""
+    verdict(what, text, limit, abs(model - value) <= allowed, width=46, reason=reason_of(what))
 
 
 def oedometer(test, role):
@@ -128,7 +168,7 @@ def oedometer(test, role):
     off = np.sqrt(np.mean((values.mean(axis=0) - sand) ** 2)) / sand.max()
     for k, when in ((len(loads) - 1, "largest strain, %"), (len(sand) - 1, "strain after unloading, %")):
         print(f"{test['name']:<6} {role:<10} {when:<28} {sand[k]:>8.3g} {in_words(values[:, k], digits=3)}")
-    verdict(f"{test['name']:<6} {role:<10} strain off, % of the largest", f"{100 * off:8.3g}", "15 %", off <= 0.15, width=46)
+    differs(f"{test['name']:<6} {role:<10} strain off, % of the largest", 0, off, "15 %", 0.15, f"{100 * off:8.3g}")
 
 
 def undrained(name):
@@ -146,13 +186,21 @@ def undrained(name):
     at, model_q, model_p, _ = min(found.values(), key=lambda each: abs(each[2].min() - p.min()))
     for what, value, model in (("q at the least p, kPa", q[np.argmin(p)], model_q[np.argmin(model_p)]),
                                ("q at the end, kPa", np.interp(at[-1], strain, q), model_q[-1])):
-        verdict(f"{name:<6} predicted  {what}", f"{value:8.3g} {model:8.3g}", "20 %", abs(model - value) <= 0.2 * value, width=46)
+        differs(f"{name:<6} predicted  {what}", value, model, "20 %", 0.2 * value, f"{value:8.3g} {model:8.3g}")
     change, of_sand = model_p[-1] - model_p[0], np.interp(at[-1], strain, p) - p[0]
-    verdict(f"{name:<6} predicted  change of p, kPa", f"{of_sand:8.3g} {change:8.3g}", "sign", change * of_sand > 0, width=46)
+    differs(f"{name:<6} predicted  change of p, kPa", np.sign(of_sand), np.sign(change), "sign", 0, f"{of_sand:8.3g} {change:8.3g}")
+
+
+@functools.cache
+def of_sand():
+    """The file of its tests."""
+    with open(FIT, "rb") as file:
+        return tomllib.load(file)
 
 
 def density_of(test):
-    return (LIMITS["e_max"] - test["void_ratio"]) / (LIMITS["e_max"] - LIMITS["e_min"])
+    limits = of_sand()["fit"]
+    return (limits["e_max"] - test["void_ratio"]) / (limits["e_max"] - limits["e_min"])
 
 
 def figure(curves):
@@ -172,16 +220,15 @@ def figure(curves):
 
 
 def main():
-    global LIMITS
-    with open(FIT, "rb") as file:
-        fit = tomllib.load(file)
-    LIMITS = fit["fit"]
+    fit = of_sand()
     print(f"{COUNT} specimens of {GRAINS} grains; measured, model with its standard error, limit")
     curves = []
     for test in fit["measured"]:
         role = "predicted" if test.get("predict") else "fitted"
         if test["protocol"] == "triaxial":
-            curves.append(drained(test, role))
+            sand, model, found = compared(test)
+            drained(test["name"], role, found)
+            curves.append((test["name"], sand, model))
         else:
             oedometer(test, role)
     for name in UNDRAINED:

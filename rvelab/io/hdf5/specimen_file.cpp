@@ -1,5 +1,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 
+#include <utility>
+
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
@@ -22,12 +24,17 @@ void describe(Archive& archive, Value& specimen) {
 
 template <class Archive, class Value>
 void describe_origin(Archive& archive, Value& origin) {
-  auto& [recipe, seed, draw, preparation_friction] = origin;
+  auto& [recipe, seed, draw, preparation_friction, expansion, strain_difference] = origin;
   archive.field("provenance/recipe", recipe, "-");
   archive.field("provenance/seed", seed, "1");
   archive.field("provenance/draw", draw, "1");
   archive.field("provenance/preparation_friction", preparation_friction, "1");
 }
+
+/// What a file without agitated grains, or made before these were stored, does not have.
+constexpr std::pair<const char*, std::optional<double> SpecimenOrigin::*> of_agitation[] = {
+    {"provenance/expansion", &SpecimenOrigin::expansion},
+    {"provenance/strain_difference", &SpecimenOrigin::strain_difference}};
 
 }  // namespace
 
@@ -110,6 +117,8 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
     if (origin == nullptr) return;
     Writer writer(file, "");
     describe_origin(writer, *origin);
+    for (const auto& [name, value] : of_agitation)
+      if (const auto& given = origin->*value) writer.field(name, *given, "1");
     writer.field("provenance/version", std::string(version), "-");
     writer.field("provenance/compiler", compiler(), "-");
   });
@@ -120,6 +129,8 @@ std::optional<SpecimenOrigin> get_origin(const Hdf5File& file) {
   SpecimenOrigin origin;
   Reader reader(file, "");
   describe_origin(reader, origin);
+  for (const auto& [name, value] : of_agitation)
+    if (file.has(std::string("/") + name)) reader.field(name, (origin.*value).emplace(), "1");
   std::string by;  // said, and read by people
   for (const char* name : {"provenance/version", "provenance/compiler"}) reader.field(name, by, "-");
   return origin;

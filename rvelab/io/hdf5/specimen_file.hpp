@@ -21,6 +21,8 @@ struct SpecimenOrigin {
   std::uint64_t seed = 0;
   std::int64_t draw = 0;            ///< that was accepted, from 1
   double preparation_friction = 0;  ///< of that draw
+  /// Of its agitated grains (pack::Agitation), given or found; none: they were not agitated.
+  std::optional<double> expansion = {}, strain_difference = {};
 };
 
 /// Writes a specimen, under /provenance how it came about if that is given: S.h5.tmp, synced, then renamed to `path`.
