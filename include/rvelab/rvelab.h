@@ -389,8 +389,8 @@ int32_t rvelab_get_parameters(rvelab_pool* pool, int64_t id, char* text, size_t 
 
 /* Sets the keys of the text, "solver.relative_tolerance = 1e-3" or in the form of rvelab_get_parameters; all others
  * stay. [material] is for all materials, [material.sand] for one. Grains, contacts and their forces do not change; the
- * state has a new token, its trials are no longer valid, a pending one is reverted. RVELAB_E_INPUT: the text names
- * line, key, value and range, and the RVE is as before. */
+ * state has a new token, its trials are no longer valid, a pending one is reverted. A key that the contact law does not
+ * read goes with that law in one text. RVELAB_E_INPUT names line, key, value and range, and the RVE is as before. */
 int32_t rvelab_set_parameters(rvelab_pool* pool, int64_t id, const char* toml);
 
 /* ---- stages of a test, since 1.3 ----

@@ -73,7 +73,7 @@ void add_instability(Listing& listing, const io::RecordedTest& test, int dimensi
   const ensemble::Instability found = ensemble::instability_of(stage);
   listing.add("second_order_work_least", found.least);
   listing.add_or_why("unstable_from_strain", found.strain, "", "the second-order work is nowhere negative");
-  const auto values = ensemble::measured(protocol::parse_protocol(test.provenance.protocol, "the protocol in the file"),
+  const auto values = ensemble::measured(protocol::parse_recorded_protocol(test.provenance.protocol, "the protocol in the file"),
                                          test.result, dimension);
   const double phi = value_of("friction_angle_deg", values), psi = value_of("dilation_angle_deg", values);
   if (std::isnan(phi) || std::isnan(psi)) return;
@@ -118,7 +118,7 @@ void add_features(Listing& listing, const io::RecordedTest& test, int dimension)
   ensemble::TestPath path = ensemble::path_of(test.result, dimension, true, keys::infinity);
   const bool oedometer = path.loading.size() > 2;
   if (!oedometer) path = ensemble::path_of(test.result, dimension, false, keys::infinity);
-  const auto protocol = protocol::parse_protocol(test.provenance.protocol, "the protocol in the file");
+  const auto protocol = protocol::parse_recorded_protocol(test.provenance.protocol, "the protocol in the file");
   Json features = Json::object();
   for (const ensemble::Feature& each : ensemble::usual_features(ensemble::test_kind(protocol, oedometer)))
     if (const double value = ensemble::value_of(each, path); std::isfinite(value)) features[each.name] = value;

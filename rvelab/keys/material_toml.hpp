@@ -49,8 +49,8 @@ void read_material_tables(const toml::table& file, Specimen& specimen, std::vect
 void expect_material_tables(const toml::table& file, std::vector<KeyError>& errors);
 
 /// Each law's own key of a material, among those tables of a file, is one that the law of the specimen reads: they have
-/// been read into it. If --set gave the law, only keys of --set are checked: the file was written for another law.
-/// Mistakes as in read_table.
+/// been read into it; a key that is 0 says nothing. If --set gave the law, only keys of --set are checked: the file was
+/// written for another law. Mistakes as in read_table.
 void expect_keys_of_law(const toml::table& file, const Specimen& specimen, std::vector<KeyError>& errors);
 
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.

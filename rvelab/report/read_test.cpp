@@ -37,7 +37,7 @@ std::optional<Test> read_test(const std::string& path, const std::string& group)
   test.group = group;
   test.recorded = io::read_recorded_test(path);
   if (test.records().empty()) return {};
-  test.protocol = protocol::parse_protocol(test.recorded.provenance.protocol, path);
+  test.protocol = protocol::parse_recorded_protocol(test.recorded.provenance.protocol, path);
   test.dimension = test.recorded.checkpoint.specimen.cell.dimension;
   test.measured = ensemble::measured(test.protocol, test.recorded.result, test.dimension);
   test.strength = ensemble::strength_of(test.protocol, test.recorded.result, test.dimension);

@@ -92,6 +92,17 @@ TEST_CASE("Unlike grains in a row share one force", "[extreme]") {
       rve.apply(entry(0, 0, -strain), 0);
       rve.relax(1e-13, 100'000);
       CHECK(rve.stress()(0, 0) == Approx(-1.3 * force / (width * depth)).epsilon(1e-9));
+
+      // The same balance, whatever takes the energy out.
+      for (const double damping : {0.01, 0.9, 0.99}) {
+        Specimen damped = specimen_of(cell_of(d, length, width, depth), positions, row.radii);
+        damped.damping.local_quasi_static = damped.damping.local = damping;
+        Rve still(damped), moving(damped);
+        CHECK(still.relax(1e-10, 1'000'000).target_held);
+        CHECK(still.stress()(0, 0) == Approx(-force / (width * depth)).epsilon(1e-8));
+        moving.apply(Matrix3::Zero(), damping < 0.1 ? 400.0 : 40.0);
+        CHECK(moving.contact_stress()(0, 0) == Approx(-force / (width * depth)).epsilon(1e-6));
+      }
     }
 }
 

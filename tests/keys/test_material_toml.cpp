@@ -158,6 +158,9 @@ TEST_CASE("a key of a material that belongs to another contact law is refused, w
   CHECK_THAT(read_file("[[material]]\nstiffness_ratio = 0.5\n[contact]\nlaw = \"cones\"\n", s),
              Contains("m.toml:2: material.stiffness_ratio") && Contains("linear"));
 
+  // What is 0 says nothing: texts with the keys of all laws are read.
+  CHECK(read_file(rough + "stiffness_ratio = 0\nadhesion_Pa = 0.0\n[contact]\nlaw = \"hertz_rough\"\n", s).empty());
+
   // Assignments, in whatever order the law comes.
   s = two_materials();
   keys::set_keys(s, {"material.gravel.roughness_m=1e-7", "contact.law=hertz_rough"});

@@ -233,6 +233,24 @@ TEST_CASE("Overrides reach the specimen and must fit it") {
   CHECK_THROWS_AS(protocol::with_overrides(protocol::parse_protocol(biaxial_text, "t"), specimen), InputError);
 }
 
+TEST_CASE("A law of --set goes over the keys of the file's law; a recorded protocol is read as it was run") {
+  Specimen specimen;
+  specimen.shape = Shape::disc;
+  specimen.cell.dimension = 2;
+  specimen.materials.resize(1);
+  const std::string text = biaxial_text +
+                           "[contact]\nlaw = \"hertz_stiffness\"\n[material]\n"
+                           "normal_stiffness_N_m1_5 = 1e9\nfriction = 0.3\n";
+  const protocol::Protocol run = protocol::parse_protocol(
+      text, "t", {"contact.law=hertz_mindlin", "material.young_modulus_Pa=1e9", "material.poisson_ratio=0.2"});
+  CHECK(protocol::with_overrides(run, specimen).contact.law == Law::hertz_mindlin);
+  CHECK(protocol::parse_recorded_protocol(run.resolved, "t").overrides == run.overrides);
+  CHECK_THROWS_WITH(protocol::parse_protocol(run.resolved, "t"), Contains("material.normal_stiffness_N_m1_5"));
+  // Without a law that of the specimen counts.
+  const protocol::Protocol bare = protocol::parse_protocol(biaxial_text + "[material]\nroughness_m = 1e-7\n", "t");
+  CHECK_THROWS_WITH(protocol::with_overrides(bare, specimen), Contains("material.roughness_m"));
+}
+
 TEST_CASE("A stiffness that a test overrides parts the specimen from masses that were scaled for another") {
   Specimen specimen;
   specimen.shape = Shape::disc;

@@ -38,7 +38,7 @@ TEST_CASE("A large cell has the same bits on any team of threads, of clumps too"
       return rve.save();
     };
     const auto alone = end_state(nullptr);
-    for (const unsigned threads : {3u, 8u}) {
+    for (const unsigned threads : {1u, 3u, 8u}) {
       Workers team(threads);
       CHECK(bool(end_state(&team) == alone));
     }

@@ -41,10 +41,8 @@ class Refusals {
     throw std::runtime_error(
         "the host has gone on without the increment that PNEWDT below 1 refused: the RVE is where that began, and this "
         "call begins elsewhere (DFGRD0, STRAN or TIME); the host must repeat a refused increment by smaller ones "
-        "(MOOSE: "
-        "IterationAdaptiveDT with a MaterialTimeStepPostprocessor as timestep_limiting_postprocessor, "
-        "reject_large_step "
-        "= true, reject_large_step_threshold = 0.999), or take smaller steps from the start");
+        "(MOOSE: IterationAdaptiveDT with a MaterialTimeStepPostprocessor as timestep_limiting_postprocessor, "
+        "reject_large_step = true, reject_large_step_threshold = 0.999), or take smaller steps from the start");
   }
 
   /// A step was made from this state: failures from another state of its RVE are removed.

@@ -11,11 +11,6 @@
 #include <limits>
 #include <string>
 
-#include <algorithm>
-#include <limits>
-#include <string>
-#include "rvelab/error.hpp"
-
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/mixed_target.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"

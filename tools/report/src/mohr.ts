@@ -1,4 +1,4 @@
-// Mohr circles at the peak and the envelope, as the calibration gives it (rvelab/report/strength.cpp).
+// Mohr circles at the peak and the envelope, as the calibration gives it (rvelab/report/page.cpp).
 import type { Section } from "./data";
 import { csvOf } from "./download";
 import { styleOf } from "./palette";
