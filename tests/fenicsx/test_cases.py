@@ -2,6 +2,7 @@
 import csv
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -109,18 +110,20 @@ class Cases(unittest.TestCase):
             body = triaxial.quarter(MPI.COMM_SELF, n)
             self.assertEqual(len(compat.locate(body, 2, triaxial.wall(n))), 2 * n * 2 * n)
 
-    def test_an_interrupt_names_the_checkpoint(self):
-        running = subprocess.Popen([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", "biaxial", "--specimens",
-                                    stand_in.specimen(), "--elements", "1", "--frames", "0", "--keep", "1", "-o", "stopped"],
-                                   cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        kept = FOLDER / "stopped/checkpoint/host.npz"
-        while running.poll() is None and not kept.exists():
-            time.sleep(0.05)
-        running.send_signal(signal.SIGINT)
-        said = running.communicate()[1]
-        self.assertRegex(said.strip(), r"^rvelab.fenicsx: stopped after t = [\d.e-]+; stopped/checkpoint holds the last "
-                         r"checkpoint, --resume goes on from it$")
-        self.assertEqual(running.returncode, 130)
+    def test_an_interrupt_names_the_checkpoint_of_its_run(self):
+        shutil.rmtree(FOLDER / "stopped", ignore_errors=True)
+        for keep, file, names in (("1", "checkpoint/host.npz", "stopped/checkpoint holds the last checkpoint, --resume goes on "
+                                   "from it"), ("0", "curve.csv", r"no checkpoint was made yet \(--keep\)")):
+            (FOLDER / "stopped/curve.csv").unlink(missing_ok=True)
+            running = subprocess.Popen([sys.executable, "-W", "ignore", "-m", "rvelab.fenicsx", "biaxial", "--specimens",
+                                        stand_in.specimen(), "--elements", "1", "--frames", "0", "--keep", keep, "-o", "stopped"],
+                                       cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            while running.poll() is None and not (FOLDER / "stopped" / file).exists():
+                time.sleep(0.05)
+            running.send_signal(signal.SIGINT)
+            said = running.communicate()[1]
+            self.assertRegex(said.strip(), rf"^rvelab.fenicsx: stopped after t = [\d.e-]+; {names}$")
+            self.assertEqual(running.returncode, 130)
 
     def test_mistakes_are_told_in_a_sentence(self):
         self.assertIn("there is no case 'biaxal'; allowed: biaxial,", case("biaxal", code=2))
@@ -130,6 +133,7 @@ class Cases(unittest.TestCase):
         with_file = ("--specimens", stand_in.specimen())
         self.assertIn("no checkpoint was made there", case("biaxial", *with_file, "--resume", "-o", "new", code=2))
         self.assertIn("tolerance is 2; allowed: 1e-6 to 0.1", case("wall", *with_file, "--tolerance", "2", code=2))
+        self.assertIn("argument --tolerance: 0: allowed are numbers above 0", case("wall", *with_file, "--tolerance", "0", code=2))
         self.assertIn("usage", case("--help"))
 
 

@@ -268,9 +268,11 @@ class Compatibility(unittest.TestCase):
                               capture_output=True, text=True)
         self.assertIn("rvelab.fenicsx needs dolfinx, which", done.stderr.splitlines()[-1])
         self.assertIn("tools/setup fenicsx", done.stderr.splitlines()[-1])
-        done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['dolfinx'] = None; sys.argv[0] = '-m'; "
-                               "import rvelab.fenicsx"], capture_output=True, text=True)  # as python3 -m rvelab.fenicsx
-        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
+        begun = "import sys; sys.modules['dolfinx'] = None; sys.argv[0] = '-m'; sys.orig_argv = ['python3', '-m', '{}']; "
+        for program, code in (("rvelab.fenicsx", 2), ("another", 7)):  # another program, started by -m, may go on
+            attempt = "try:\n import rvelab.fenicsx\nexcept ImportError:\n sys.exit(7)"
+            done = subprocess.run([sys.executable, "-c", begun.format(program) + "\n" + attempt], capture_output=True, text=True)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (code, 1 if code == 2 else 0))
 
 
 if __name__ == "__main__":

@@ -79,6 +79,11 @@ class Convergence(unittest.TestCase):
         step = next(solver.march(0.1, 0.1))
         self.assert_quadratic(step.residuals, 1e-12)
 
+    def test_it_reaches_the_tolerance_where_the_stiffness_is_a_million_pressures(self):
+        material = with_law(fenicsx.Material(block(distorted=0.2), specimen()), shear=50e9, lame=40e9)
+        step = next(compressed(material).march(1e-6, 1e-6))
+        self.assertLess(step.residual, material.tolerance)
+
     def test_it_is_quadratic_with_rves_of_frozen_contacts(self):
         """Hertz contacts without sliding: their stiffness grows with the overlap, so that the RVE is curved but smooth."""
         file = specimen("frozen", 50, "pack_dense", **{"contact.law": "hertz_mindlin", "contact.rolling": False,

@@ -79,6 +79,9 @@ for k in range(INCREMENTS):
         move[free] = np.linalg.solve(K[np.ix_(free, free)], right[free])
         u += move
         sigma = update(u)
+    else:
+        sys.exit(f"not converged in 10 iterations at strain {(k + 1) * STRAIN / INCREMENTS:.5f}: smaller increments "
+                 "(INCREMENTS), or a larger TOLERANCE")
     pool.commit()
     load = -residual()[vertical(TOP)].sum() / WIDTH
     print(f"strain {(k + 1) * STRAIN / INCREMENTS:.5f}  load ratio {load / P:.4f}  iterations {iteration}  "

@@ -24,7 +24,7 @@ except ModuleNotFoundError as missing:
     _text = (f"rvelab.fenicsx needs {missing.name}, which {_sys.executable or 'this Python'} does not have: "
              "tools/setup fenicsx, or apt-get install python3-dolfinx-real; other systems: "
              "https://fenicsproject.org/download")
-    if _sys.argv[:1] == ["-m"]:  # python3 -m rvelab.fenicsx: a line is enough
+    if _sys.argv[:1] == ["-m"] and "rvelab.fenicsx" in getattr(_sys, "orig_argv", ()):  # the program: a line is enough
         print(_text, file=_sys.stderr)
         _sys.exit(2)
     raise ImportError(_text) from None

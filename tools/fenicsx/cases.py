@@ -69,7 +69,7 @@ def parser(name: str, text: str, **defaults: Any) -> argparse.ArgumentParser:
     add("--degree", type=int, default=1, choices=(1, 2), help="of the displacement (default: 1)")
     add("--to", type=positive, default=defaults["to"], help="load parameter at the end (default: %(default)s)")
     add("--first", type=positive, default=defaults["first"], help="first and largest increment (default: %(default)s)")
-    add("--tolerance", type=float, default=1e-3, help="of forces and of the stresses of RVEs (default: 1e-3)")
+    add("--tolerance", type=positive, default=1e-3, help="of forces and of the stresses of RVEs (default: 1e-3)")
     add("--strains", default="finite", choices=("finite", "small"))
     add("--length", type=float, default=0, metavar="M", help="gives bands a width; 0: none (default)")
     add("--stiffening", type=float, default=0.1, help="of strain beside its average over that length (default: 0.1)")
@@ -152,9 +152,11 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
     """Collective. Runs the case to its end, or to where it fails: prints the table, writes curve.csv, fields and
     checkpoints, prints the summary. The columns as arrays, with `t` the first."""
     names, rows, first = ["t", *columns], [], comm.rank == 0
+    kept = o.output / "checkpoint"
+    earlier = _saved(kept)  # another run may have left one there
     curve = o.output / "curve.csv"
     if o.resume:
-        load(solver, o.output / "checkpoint")
+        load(solver, kept)
         with open(curve, newline="") as file:
             rows = [list(map(float, each)) for each in list(csv.reader(file))[1:]]
         rows = [each for each in rows if each[0] <= solver.t * (1 + 1e-9)]
@@ -176,20 +178,26 @@ def follow(o: Any, comm: Any, solver: Solver, columns: Sequence[str],
             if fields and len(solver.history) % o.frames == 0:
                 fields.write(step.t)
             if o.keep and len(solver.history) % o.keep == 0:
-                save(solver, o.output / "checkpoint")
+                save(solver, kept)
     except NotConverged as error:
         _print(first, f"stopped: {error}")
     except KeyboardInterrupt:
-        kept = o.output / "checkpoint"
         raise KeyboardInterrupt(f"stopped after t = {solver.t:.4g}; " + (
-            f"{kept} holds the last checkpoint, --resume goes on from it" if (kept / "host.npz").exists() else
+            f"{kept} holds the last checkpoint, --resume goes on from it" if o.resume or _saved(kept) != earlier else
             "no checkpoint was made yet (--keep)")) from None
-    if fields:
-        fields.close()
+    finally:
+        if fields:
+            fields.close()
     if o.keep and solver.history:
-        save(solver, o.output / "checkpoint")
+        save(solver, kept)
     _print(first, *("\n" + line for line in summary(solver)))
     return dict(zip(names, np.array(rows).T.reshape(len(names), -1)))
+
+
+def _saved(checkpoint: Path) -> int:
+    """When, ns; 0: never."""
+    file = checkpoint / "host.npz"
+    return file.stat().st_mtime_ns if file.exists() else 0
 
 
 def tell(comm: Any, *lines: str) -> None:

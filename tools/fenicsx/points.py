@@ -197,7 +197,7 @@ class Points:
             return
         load = np.zeros(comm.size)
         np.add.at(load, self.home[self.made], self.work[self.made])
-        load = sum(comm.allgather(load))
+        load = comm.allreduce(load)  # whole counts: exact in any order
         if load.sum() == 0:
             return
         self.spread.append(float(load.max() / load.mean()))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Sequence
 
 import numpy as np
+from mpi4py import MPI
 
 from .forms import Forms
 from .material import Material
@@ -21,9 +22,10 @@ GROW_BELOW, GROWTH = 5, 1.5  # an increment of at most so many iterations lets t
 COARSEST = 5
 # Displacements are whole multiples of FINEST tolerances times the shortest edge of the mesh (a power of two, m). Strains
 # are then off by as much, stresses by that times the stiffness: a hundredth of the tolerance where it is a thousand
-# pressures. The round-off of linear solvers, which differs with the number of ranks, is far below, so that RVEs get the
-# same bits on any number of them. Without it grains magnify the round-off to another path.
-FINEST = 2.0 ** -17
+# pressures. Of a body that is stiffer than STIFFEST pressures they are finer by as much. The round-off of linear solvers,
+# which differs with the number of ranks, is far below, so that RVEs get the same bits on one rank and on more, but where a
+# value lies within the round-off of the edge between two multiples. Without it grains magnify the round-off to another path.
+FINEST, STIFFEST = 2.0 ** -17, 2.0 ** 14
 
 
 @dataclass
@@ -58,10 +60,18 @@ class Solver:
 
     def __init__(self, material: Material, tolerance: float | None = None) -> None:
         self.material, self.tolerance = material, material.tolerance if tolerance is None else tolerance
+        if not self.tolerance > 0:
+            raise ValueError(f"tolerance is {self.tolerance:g}; allowed are numbers above 0")
         self.forms = Forms(material)
         self.t, self.dt, self.history = 0.0, 0.0, []
         self._last, self._last_dt = None, 0.0  # displacement of the increment before, for the predictor
-        self._edge = self.forms.shortest_edge()
+        self._edge = self.forms.shortest_edge() / max(1, self._stiffness() / STIFFEST)
+
+    def _stiffness(self) -> float:
+        """Largest stiffness of the first state over its largest stress. Collective."""
+        stress, tangent = (self.material.mesh.comm.allreduce(float(np.max(np.abs(each), initial=0)), MPI.MAX)
+                           for each in self.material.values())
+        return tangent / stress if stress > 0 else 0.0
 
     def fix(self, where: Callable[[np.ndarray], np.ndarray], component: int, value: float | Callable[[float], float] = 0.0,
             at: str = "facets", profile: Callable[[np.ndarray], np.ndarray] | None = None) -> None:

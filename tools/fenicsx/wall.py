@@ -60,5 +60,6 @@ def main(words, comm):
         for theory, angle in zip(told, (0, max(delta, 0))):
             K = coulomb(np.radians(phi), np.radians(angle), o.passive)
             told[theory].append(f"{K:.3f} by {phi:.1f} degrees ({name})")
-    cases.tell(comm, f"{'largest' if o.passive else 'least'} K {extreme:.3f}, at the end {found['K'][-1]:.3f}; wall friction "
+    where = "at the end of the run" if at == len(found["K"]) - 1 else f"at the end {found['K'][-1]:.3f}"
+    cases.tell(comm, f"{'largest' if o.passive else 'least'} K {extreme:.3f}, {where}; wall friction "
                f"{delta:.1f} degrees", *(f"{theory} {', '.join(each)}" for theory, each in told.items()))

@@ -36,8 +36,9 @@ class Counted:
         self._add([pickle.dumps(each, -1)] * (self.size - 1))
         return self.comm.allgather(each)
 
-    def allreduce(self, *given):
-        return self.comm.allreduce(*given)
+    def allreduce(self, each):
+        self._add([pickle.dumps(each, -1)] * (2 if self.rank else 0))  # a tree up and down: 2 (size - 1) of all ranks
+        return self.comm.allreduce(each)
 
 
 class Points(material.Points):

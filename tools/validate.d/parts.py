@@ -223,7 +223,7 @@ PARTS = [
     Part("fenicsx_thousand", 60, "968 points to 3 % of strain through the peak, on one rank and on two",
          targets="rvelab_shared", packages="python3-dolfinx python3-dolfinx-real openmpi-bin",
          command="check fenicsx $work/fenicsx thousand"),
-    Part("fenicsx_published", 10, "the biaxial test of Guo and Zhao by the numbers of YADE's scripts", targets="rvelab_shared",
+    Part("fenicsx_published", 10, "the biaxial test of Guo and Zhao by the inputs of YADE's scripts; nothing published is compared", targets="rvelab_shared",
          packages="python3-dolfinx python3-dolfinx-real openmpi-bin", command="check fenicsx $work/fenicsx published"),
     Part("fenicsx_wall", 20, "a retaining wall beside Rankine and Coulomb", targets="rvelab_shared",
          packages="python3-dolfinx python3-dolfinx-real openmpi-bin", command="check fenicsx_capacity $work/fenicsx wall"),
