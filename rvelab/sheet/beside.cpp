@@ -139,6 +139,12 @@ Series symbols_of(const std::string& label, const std::vector<double>& x, double
   return series;
 }
 
+/// By the deviator that is largest in size: a compression that liquefies may end a little below 0.
+bool extends(const fit::Curve& deviator) {
+  const auto [least, most] = std::minmax_element(deviator.all_y.begin(), deviator.all_y.end());
+  return least != deviator.all_y.end() && *least + *most < 0;
+}
+
 void place_curve(Sheet& sheet, const MeasuredCurve& measured, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / measured.curve).string();
   const auto curves = fit::read_curves(path, measured.selection, [&](std::string note) {
@@ -156,13 +162,14 @@ void place_curve(Sheet& sheet, const MeasuredCurve& measured, const std::string&
   for (const fit::Curve& curve : curves) {
     if (curve.name == "deviator") deviator = &curve;
     if (curve.name == "p") pressure = &curve;
-    if (curve.name == "deviator" && measured.test.ends_with("drained") && !curve.all_y.empty() &&
-        curve.all_y.back() < 0) {
-      sheet.remarks.push_back("The measured test " + measured.name +
-                              " is not drawn: its deviator ends below 0, so that it is an extension, and the figures "
-                              "are of compressions.");
-      return;
-    }
+  }
+  if (deviator != nullptr && measured.test.ends_with("drained") && extends(*deviator)) {
+    sheet.remarks.push_back("The measured test " + measured.name +
+                            " is not drawn: its deviator goes further below 0 than above, so that it is an extension, "
+                            "and the figures are of compressions.");
+    return;
+  }
+  for (const fit::Curve& curve : curves) {
     const Axes axes = axes_of(measured.test, curve);
     if (axes.x_factor == 0) continue;
     Series series = symbols_of(measured.name, curve.all_x, axes.x_factor, curve.all_y, axes.y_factor);

@@ -139,7 +139,8 @@ ensemble::CriticalLine add_line(const std::vector<Test>& tests, Sheet& sheet) {
   add_number(sheet, std::move(scatter));
   Number log_line = number(log_void_ratio, LineForm::logarithmic, &ensemble::CriticalLine::Gamma);
   Number log_fall = number(log_slope, LineForm::logarithmic, &ensemble::CriticalLine::lambda);
-  log_line.remark = log_fall.remark = why_unknown(log_fall);
+  log_fall.remark = why_unknown(log_fall);
+  if (!log_fall.remark.empty()) log_line.remark = "goes with a \u03bb that may be 0, so not for models";
   add_number(sheet, std::move(log_line));
   add_number(sheet, std::move(log_fall));
   if (!any_steady)

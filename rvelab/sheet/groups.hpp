@@ -34,11 +34,13 @@ struct EndState {
   double friction_angle = unknown;  ///< degrees
   double angle_error = unknown;     ///< of calculation, degrees
   double pressure_error = unknown;  ///< of p, Pa
-  bool steady = false;  ///< the mean over seeds is, or may be by its scatter: e of drained, p of undrained tests
+  bool steady = false;  ///< mean over seeds: e of drained tests within its bounds, p of undrained tests
+  double doubt = 0;     ///< half of the 95 % interval of the mean change of e
 };
 inline constexpr double end_strain = 0.12;          ///< a test that does not come so far has no end state
 inline constexpr double steady_void_ratio = 0.003;  ///< most that e changes from one half of the window to the other
-inline constexpr double steady_pressure = 0.05;     ///< the same of p, over its mean
+inline constexpr double scattering_void_ratio = 0.006;  ///< the same where the scatter of tests explains it
+inline constexpr double steady_pressure = 0.05;         ///< the same of p, over its mean
 /// Of compressions, drained and undrained.
 std::vector<EndState> end_states(const std::vector<Test>& tests);
 

@@ -100,8 +100,10 @@ Peaks peaks_of(const std::vector<Test>& tests) {
 
 void add_critical_angle(const std::vector<Test>& tests, Sheet& sheet) {
   Readings all, steady;
+  double doubt = 0;
   for (const EndState& end : end_states(tests)) {
     if (end.test->purpose != Purpose::drained) continue;
+    doubt = std::max(doubt, end.doubt);
     all.push_back({end.test, end.friction_angle, end.angle_error});
     if (end.steady) steady.push_back(all.back());
   }
@@ -126,6 +128,10 @@ void add_critical_angle(const std::vector<Test>& tests, Sheet& sheet) {
   else if (steady.size() < all.size())
     sheet.remarks.push_back("The critical friction angle is that of " + std::to_string(steady.size()) + " of " +
                             std::to_string(all.size()) + " drained tests: the void ratio of the others still changes.");
+  if (doubt > scattering_void_ratio)
+    sheet.remarks.push_back("That the void ratio is steady at the ends of drained tests is known to " +
+                            in_words(std::round(doubt * 1000) / 1000) +
+                            " in e alone, the 95 % interval of its mean change over specimens.");
 }
 
 /// The relation as lines over the pressures of the tests, and the measured means.
@@ -241,7 +247,8 @@ Window window_of(const Test& test) {
 }
 
 /// Half of the 95 % interval of the mean change of e over `seeds` tests, from their scatter around the means of all
-/// groups: 0 where each has one specimen. A test of few grains goes up and down at rest by more than it is from it.
+/// groups, all densities and pressures: 0 where each has one specimen. A test of few grains goes up and down at rest by
+/// more than it is from it.
 double doubt_of_change(const std::vector<std::vector<Window>>& groups, std::size_t seeds) {
   double squares = 0, freedom = 0;
   for (const auto& group : groups) {
@@ -272,8 +279,10 @@ std::vector<EndState> end_states(const std::vector<Test>& tests) {
       for (const Window& window : group) e_change += window.e_change / n, p_change += window.p_change / n;
       const double doubt = doubt_of_change(groups, group.size());
       for (Window& window : group) {
-        window.end.steady = purpose == Purpose::drained ? std::abs(e_change) <= std::max(steady_void_ratio, doubt)
-                                                        : std::abs(p_change) <= steady_pressure;
+        window.end.steady = purpose == Purpose::drained
+                                ? std::abs(e_change) <= std::clamp(doubt, steady_void_ratio, scattering_void_ratio)
+                                : std::abs(p_change) <= steady_pressure;
+        window.end.doubt = doubt;
         ends.push_back(window.end);
       }
     }

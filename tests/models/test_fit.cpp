@@ -149,6 +149,8 @@ TEST_CASE("a number of the sheet that the model cannot take is fitted, and one t
       fit("hardening_soil_small", own_curves(law, 0.6, 0.6), {{"K0nc", 0.42}, {"Eur_ref_Pa", 9e7}, {"G0_ref_Pa", 2e7}});
   // G_ur = E_ur/(2 (1 + nu)).
   CHECK(parameter(soft, "G0_ref").value == Approx(9e7 / 2.4));
+  CHECK(std::string(name_of(parameter(soft, "G0_ref").origin)) == "sheet (changed)");
+  CHECK(parameter(soft, "Eur_ref").origin == Origin::sheet);
   CHECK(says(soft, "G0_ref of the sheet, 2e+07 Pa, does not go with the other parameters: 3.75e+07 Pa is used"));
 }
 
@@ -163,6 +165,11 @@ TEST_CASE("what is assumed is told from what is fitted and what the sheet gives,
     CHECK(parameter(found, name).origin == origin);
     CHECK(std::isnan(parameter(found, name).low) == (origin != Origin::fitted));
   }
+  // G0 follows an E_ur that the fit moves away from its guess of 3 E50.
+  const Fit follows = fit("hardening_soil_small", own_curves(law, 0.6, 0.6), {{"E50_ref_Pa", 5e7}});
+  CHECK(parameter(follows, "G0_ref").origin == Origin::assumed);
+  CHECK(parameter(follows, "Eur_ref").value < 0.95 * 3 * 5e7);
+  CHECK(parameter(follows, "G0_ref").value == Approx(0.8 * parameter(follows, "Eur_ref").value));
   const std::string told = "assumed, since neither tests nor sheet tell: nu_ur, G0_ref, gamma_07";
   CHECK(std::find(found.remarks.begin(), found.remarks.end(), told) != found.remarks.end());
   const std::string table = card(found, "table");
@@ -339,4 +346,7 @@ TEST_CASE("misfits on tests of specimens that were kept back stay what they were
     }
     CHECK(found);
   }
+  // Without that exponent it is 1, and the stiffness grows with p without end.
+  for (const Misfit& misfit : fit("norsand", specimen("_"), {}).misfits)
+    if (misfit.test == "undrained_dense_200kPa") CHECK(misfit.stress == Approx(1.6).epsilon(0.05));
 }

@@ -96,10 +96,10 @@ TEST_CASE("Hardening Soil small loses stiffness by 1/(1 + 0.385 gamma/gamma_07)"
   CHECK(result.q[1] - result.q[2] == Approx(2 * secant * gamma).epsilon(1e-3));
 }
 
-TEST_CASE("Hardening Soil is that of PLAXIS in triaxial tests on Berlin Sand III") {
-  // PLAXIS 2014, Hardening Soil Model, table 15.1, figures 15.4 (drained) and 15.5 (undrained), as read off in the
-  // tests of github.com/fkkarakurt/katai2d: sigma_3 = 200 kPa, c = 1 kPa. Without small strains. The cohesion is a
-  // shift of all stresses, and of p_ref, by c cot(phi).
+TEST_CASE("Hardening Soil agrees with curves read from PLAXIS on Berlin Sand III within 30 to 50 %") {
+  // PLAXIS 2014, Hardening Soil Model, table 15.1, figures 15.4 (drained) and 15.5 (undrained), as read off,
+  // second-hand, by the tests of github.com/fkkarakurt/katai2d: sigma_3 = 200 kPa, c = 1 kPa. Without small strains.
+  // The cohesion is a shift of all stresses, and of p_ref, by c cot(phi).
   const double phi = 38 * 0.017453292519943295, shift = 1e3 / std::tan(phi), p0 = 200e3 + shift;
   const double E = 105e6 * std::pow(1e5 / (1e5 + shift), 0.55);
   const HardeningSoilSmall law({38, 6, E, E, 3 * E, 0.55, 0.2, 0.38, 0.9, 0, 1e-4});

@@ -200,6 +200,20 @@ TEST_CASE("a measured extension is not drawn among compressions") {
   CHECK(made.figures[0].series.size() == 1);
   REQUIRE(made.remarks.size() == 1);
   CHECK_THAT(made.remarks[0], Catch::Matchers::Contains("TE is not drawn") && Catch::Matchers::Contains("extension"));
+  // Nor what stands before its deviator; a compression that liquefies may end a little below 0.
+  const auto drawn = [&](const char* rows) {
+    std::ofstream(folder / "curve.csv") << "axial_strain_percent,volumetric_strain_percent,deviator_kPa\n" << rows;
+    Sheet own = made_sheet();
+    own.figures.push_back(own.figures[0]);
+    own.figures.back().key = "drained_volume";
+    const std::size_t before = own.figures.back().series.size();
+    add_measured(own, folder / "beside.toml");
+    CHECK(own.figures[0].series.size() == own.figures.back().series.size());
+    return own.figures.back().series.size() > before;
+  };
+  CHECK(!drawn("0,0,0\n1,-1,-50\n2,-2,-80\n5,-3,-90\n"));
+  CHECK(!drawn("0,0,5\n1,-1,-50\n2,-2,-80\n5,-3,0.1\n"));
+  CHECK(drawn("0,0,0\n1,1,50\n2,2,20\n5,3,-0.1\n"));
 }
 
 TEST_CASE("a wrong file beside a sheet is refused with its line and the remedy") {

@@ -213,10 +213,12 @@ std::vector<Entry> within_limits(std::vector<Entry> entries, Fit& fit) {
 void remark_changes(const std::vector<Entry>& entries, const std::vector<double>& values, Fit& fit) {
   for (std::size_t k = 0; k < entries.size(); ++k)
     if (entries[k].origin == Origin::sheet &&
-        std::abs(values[k] - entries[k].value) > 1e-9 * std::abs(entries[k].value))
+        std::abs(values[k] - entries[k].value) > 1e-9 * std::abs(entries[k].value)) {
+      fit.parameters[k].origin = Origin::changed;
       fit.remarks.push_back(entries[k].name + " of the sheet, " + with_unit(entries[k], entries[k].value) +
                             ", does not go with the other parameters: " + with_unit(entries[k], values[k]) +
                             " is used");
+    }
 }
 
 void remark_assumed(Fit& fit) {
@@ -252,7 +254,7 @@ void remark_density_and_rise(const Tests& tests, Fit& fit) {
 }  // namespace
 
 const char* name_of(Origin origin) {
-  static const char* const names[] = {"fitted", "sheet", "assumed"};
+  static const char* const names[] = {"fitted", "sheet", "sheet (changed)", "assumed"};
   return names[int(origin)];
 }
 

@@ -36,10 +36,10 @@ std::vector<Entry> parameters_of_hardening_soil(const Tests& tests, const Number
   const double m = number_or(numbers, "exponent_m", std::clamp(secant.exponent, 0.2, 0.9));
   const double Eoed = number_or(numbers, "Eoed_ref_Pa", oedometer_modulus(tests, m));
   const double Eur = number_or(numbers, "Eur_ref_Pa", 3 * E50);
-  const double G0 = number_or(numbers, "G0_ref_Pa", 0.8 * Eur);
   constexpr Origin fitted = Origin::fitted;
-  // Small strains: without a test of them nothing tells what a sheet does not.
+  // Small strains: without a test of them nothing tells what a sheet does not, and G0 follows E_ur.
   const Origin small = of_loading(tests, Loading::cyclic_shear).empty() ? Origin::assumed : fitted;
+  const double G0 = number_or(numbers, "G0_ref_Pa", small == fitted ? 0.8 * Eur : unknown);
   return {
       {"phi", "deg", "friction angle", phi, 15, 65, fitted, false},
       {"psi", "deg", "dilation angle", std::max(1.0, 0.3 * phi), -15, 40, fitted, false},
@@ -75,7 +75,7 @@ void tie_of_hardening_soil(std::vector<double>& v) {
   if (!std::isfinite(v[K0_at])) v[K0_at] = 1 - std::sin(v[phi_at] * degree);
   const HardeningSoilSmall law(parameters_at(v));
   v[Eur_at] = law.used().Eur;
-  v[G0_at] = law.used().G0;
+  v[G0_at] = std::isfinite(v[G0_at]) ? law.used().G0 : 0.8 * law.used().Eur;
 }
 
 std::unique_ptr<Law> law_of_hardening_soil(const std::vector<double>& v) {

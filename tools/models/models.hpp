@@ -29,8 +29,8 @@ struct ElementTest {
 
 /// Where the value of a parameter comes from: the fit, a number of the data sheet, or neither: a usual value, or a
 /// relation to other parameters.
-enum class Origin { fitted, sheet, assumed };
-/// "fitted", "sheet", "assumed".
+enum class Origin { fitted, sheet, changed, assumed };  ///< changed: of the sheet, to go with other parameters
+/// "fitted", "sheet", "sheet (changed)", "assumed".
 const char* name_of(Origin origin);
 
 struct Parameter {
