@@ -131,7 +131,7 @@ void add_critical_angle(const std::vector<Test>& tests, Sheet& sheet) {
   if (doubt > scattering_void_ratio)
     sheet.remarks.push_back("That the void ratio is steady at the ends of drained tests is known to " +
                             in_words(std::round(doubt * 1000) / 1000) +
-                            " in e alone, the 95 % interval of its mean change over specimens.");
+                            " in e alone: by so much the mean over specimens is off (95 %).");
 }
 
 /// The relation as lines over the pressures of the tests, and the measured means.

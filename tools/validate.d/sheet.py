@@ -104,10 +104,10 @@ def main():
             scale, unit = (1e-6, "MPa") if each["unit"] == "Pa" else (1, each["unit"])
             mean, low, high, known = (scale * (np.nan if each[key] is None else each[key])
                                       for key in ("mean", "low_95", "high_95", "published"))
-            half, error = (high - low) / 2, scale * (each["calculation_error"] or 0)
+            half, error = (high - low) / 2, each["calculation_error"] and scale * each["calculation_error"]
             verdict(f"{each['key']}, {each['published_by']}",
-                    f"{known:.3g} {mean:.3g} +- {half:.3g} of specimens, {error:.3g} of calculation {unit}",
-                    "within both", abs(mean - known) <= np.hypot(half, error), width=60, reason=why.get(each["key"], ""))
+                    f"{known:.3g} {mean:.3g} +- {half:.3g} of specimens{f', {error:.3g} of calculation' if error else ''} {unit}",
+                    "within both", abs(mean - known) <= np.hypot(half, error or 0), width=60, reason=why.get(each["key"], ""))
         for model in summary["models"]:
             for each in model["misfits"]:
                 if not each["fitted"] and each["stress"] is not None:
