@@ -56,10 +56,11 @@ std::string interval_with_remark(const Number& number) {
 std::string published_of(const Number& number) {
   if (!std::isfinite(number.published)) return "";
   const std::string by = number.published_by.empty() ? "" : " (" + number.published_by + ")";
-  const bool within = number.low <= number.published && number.published <= number.high;
-  const std::string off = in_its_unit(number, std::abs(number.mean - number.published));
-  return in_its_unit(number, number.published) + by + ": " +
-         (within ? "within the interval" : off + (number.mean < number.published ? " below" : " above") + " it");
+  const double off = std::abs(number.mean - number.published);
+  std::string where = in_its_unit(number, off) + (number.mean < number.published ? " below it" : " above it");
+  if (off <= number.calculation_error) where = "within the error of calculation";
+  if (number.low <= number.published && number.published <= number.high) where = "within the interval";
+  return in_its_unit(number, number.published) + by + ": " + where;
 }
 
 std::string density_in_words(const Number& number) {
