@@ -73,8 +73,8 @@ void add_instability(Listing& listing, const io::RecordedTest& test, int dimensi
   const ensemble::Instability found = ensemble::instability_of(stage);
   listing.add("second_order_work_least", found.least);
   listing.add_or_why("unstable_from_strain", found.strain, "", "the second-order work is nowhere negative");
-  const auto values = ensemble::measured(protocol::parse_recorded_protocol(test.provenance.protocol, "the protocol in the file"),
-                                         test.result, dimension);
+  const auto values = ensemble::measured(
+      protocol::parse_recorded_protocol(test.provenance.protocol, "the protocol in the file"), test.result, dimension);
   const double phi = value_of("friction_angle_deg", values), psi = value_of("dilation_angle_deg", values);
   if (std::isnan(phi) || std::isnan(psi)) return;
   listing.add("coulomb_angle_deg", 45 + phi / 2, "degrees");

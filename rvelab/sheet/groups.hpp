@@ -34,8 +34,8 @@ struct EndState {
   double friction_angle = unknown;  ///< degrees
   double angle_error = unknown;     ///< of calculation, degrees
   double pressure_error = unknown;  ///< of p, Pa
-  bool steady = false;  ///< mean over seeds: e of drained tests within its bounds, p of undrained tests
-  double doubt = 0;     ///< half of the 95 % interval of the mean change of e
+  bool steady = false;              ///< mean over seeds: e of drained tests within its bounds, p of undrained tests
+  double doubt = 0;                 ///< half of the 95 % interval of the mean change of e
 };
 inline constexpr double end_strain = 0.12;          ///< a test that does not come so far has no end state
 inline constexpr double steady_void_ratio = 0.003;  ///< most that e changes from one half of the window to the other

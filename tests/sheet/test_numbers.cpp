@@ -147,7 +147,8 @@ TEST_CASE("ends whose void ratios go up and down from seed to seed are at rest, 
   CHECK(!remarks(rising(0.1, 0), "critical"));
   CHECK(remarks(rising(0.2, 0), "No drained test has reached a steady void ratio"));
   CHECK(!remarks(rising(0.2, 0.03), "drained tests is known to"));
-  // s = 0.02525 over the seeds: the 95 % interval of the mean, t of 18 degrees of freedom, is +-0.031 and shows no more.
+  // s = 0.02525 over the seeds: the 95 % interval of the mean, t of 18 degrees of freedom, is +-0.031 and shows no
+  // more.
   CHECK(!remarks(rising(0.2, 1), "No drained test has reached a steady void ratio"));
   CHECK(remarks(rising(0.2, 1), "drained tests is known to 0.031 in e alone"));
   CHECK(remarks(rising(0.3, 1), "No drained test has reached a steady void ratio"));

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   size_t need = 0;
   void* bytes = NULL;
   EXPECT(argc == 2);
-  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR && rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
+  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR &&
+         rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
   EXPECT((rvelab_capabilities() & RVELAB_CAN_FILES) != 0 && strlen(rvelab_version()) > 2);
   EXPECT(strcmp(rvelab_status_name(RVELAB_E_BUSY), "RVELAB_E_BUSY") == 0);
   EXPECT(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK);
@@ -49,7 +50,8 @@ int main(int argc, char** argv) {
   EXPECT(rvelab_snapshot_load(pool, ids[1], bytes, need) == RVELAB_OK);
   EXPECT(rvelab_template_from_snapshot(pool, bytes, need, &specimen) == RVELAB_OK);
 #if RVELAB_ABI_MINOR >= 1
-  EXPECT(rvelab_template_release(pool, specimen) == RVELAB_OK && rvelab_template_release(pool, specimen) == RVELAB_E_ID);
+  EXPECT(rvelab_template_release(pool, specimen) == RVELAB_OK &&
+         rvelab_template_release(pool, specimen) == RVELAB_E_ID);
 #endif
   free(bytes);
   EXPECT(rvelab_clone(pool, ids[0], &twin) == RVELAB_OK && rvelab_release(pool, 1, &twin) == RVELAB_OK);

@@ -1,6 +1,6 @@
 /* A host of version 1.2, compiled with the header of that version: consumer_1_2 SPECIMEN.h5 prints "ok". */
-#include "consumer.h"
 #include <math.h>
+#include "consumer.h"
 
 /* Its text in memory of the caller, or null. */
 static char* parameters_of(rvelab_pool* pool, int64_t id) {
@@ -26,9 +26,11 @@ int main(int argc, char** argv) {
   size_t need = 0;
   char* text;
   EXPECT(argc == 2);
-  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR && rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
+  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR &&
+         rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
   EXPECT(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK && rvelab_pool_create(&def, &pool) == RVELAB_OK);
-  EXPECT(rvelab_template_load(pool, argv[1], &specimen) == RVELAB_OK && rvelab_spawn(pool, specimen, 1, &id) == RVELAB_OK);
+  EXPECT(rvelab_template_load(pool, argv[1], &specimen) == RVELAB_OK &&
+         rvelab_spawn(pool, specimen, 1, &id) == RVELAB_OK);
   EXPECT(rvelab_info_init(&before, sizeof before) == RVELAB_OK && rvelab_get_info(pool, id, &before) == RVELAB_OK);
   EXPECT(before.sigma[0] < 0 && before.reynolds[0] == 0 && before.contact[4] == before.sigma[4]);
   EXPECT(rvelab_mixed_init(&mixed, sizeof mixed) == RVELAB_OK);
@@ -54,14 +56,18 @@ int main(int argc, char** argv) {
   EXPECT(rvelab_list_arrays(pool, id, 128, arrays, &n) == RVELAB_OK && n > 10);
   for (k = 0; k < (n < 128 ? n : 128); ++k)
     if (strcmp(arrays[k].name, "contacts/force_N") == 0) break;
-  EXPECT(k < n && arrays[k].of == RVELAB_OF_CONTACTS && arrays[k].rows == after.contacts && strcmp(arrays[k].unit, "N") == 0);
-  EXPECT(rvelab_get_array(pool, id, "contacts/force_N", NULL, 0, &need) == RVELAB_OK && need == 8 * (size_t)(3 * after.contacts));
-  EXPECT((force = malloc(need)) != NULL && rvelab_get_array(pool, id, "contacts/force_N", force, need - 1, &need) == RVELAB_E_BUFFER);
+  EXPECT(k < n && arrays[k].of == RVELAB_OF_CONTACTS && arrays[k].rows == after.contacts &&
+         strcmp(arrays[k].unit, "N") == 0);
+  EXPECT(rvelab_get_array(pool, id, "contacts/force_N", NULL, 0, &need) == RVELAB_OK &&
+         need == 8 * (size_t)(3 * after.contacts));
+  EXPECT((force = malloc(need)) != NULL &&
+         rvelab_get_array(pool, id, "contacts/force_N", force, need - 1, &need) == RVELAB_E_BUFFER);
   EXPECT(rvelab_get_array(pool, id, "contacts/force_N", force, need, &need) == RVELAB_OK);
   free(force);
   EXPECT(rvelab_get_array(pool, id, "no such array", NULL, 0, &need) == RVELAB_E_INPUT);
   EXPECT(rvelab_set_parameters(pool, id, "solver.relative_tolerance = 0.03125") == RVELAB_OK);
-  EXPECT((text = parameters_of(pool, id)) != NULL && strstr(text, "0.03125") != NULL && strstr(text, "[contact]") != NULL);
+  EXPECT((text = parameters_of(pool, id)) != NULL && strstr(text, "0.03125") != NULL &&
+         strstr(text, "[contact]") != NULL);
   free(text);
   EXPECT(rvelab_set_parameters(pool, id, "solver.relative_tolerance = -1") == RVELAB_E_INPUT);
   EXPECT(rvelab_relax(pool, id, 1e-3, 10000, sigma) >= RVELAB_OK && sigma[0] < 0);

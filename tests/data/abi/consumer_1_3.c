@@ -23,9 +23,11 @@ int main(int argc, char** argv) {
   int32_t status = -1;
   size_t need = 0;
   EXPECT(argc == 2);
-  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR && rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
+  EXPECT(rvelab_abi_version() >> 16 == RVELAB_ABI_MAJOR &&
+         rvelab_abi_version() >= (RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR));
   EXPECT(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK && rvelab_pool_create(&def, &pool) == RVELAB_OK);
-  EXPECT(rvelab_template_load(pool, argv[1], &specimen) == RVELAB_OK && rvelab_spawn(pool, specimen, 1, &id) == RVELAB_OK);
+  EXPECT(rvelab_template_load(pool, argv[1], &specimen) == RVELAB_OK &&
+         rvelab_spawn(pool, specimen, 1, &id) == RVELAB_OK);
   EXPECT(rvelab_info_init(&before, sizeof before) == RVELAB_OK && rvelab_get_info(pool, id, &before) == RVELAB_OK);
   EXPECT(rvelab_array_init(arrays, sizeof arrays[0]) == RVELAB_OK);
   for (k = 1; k < 512; ++k) arrays[k] = arrays[0];
@@ -43,9 +45,11 @@ int main(int argc, char** argv) {
   EXPECT(rvelab_list_arrays(pool, id, 512, arrays, &n) == RVELAB_OK && n <= 512);
   bonds = rows_of(arrays, n, "bonds/tensile_strength_Pa");
   EXPECT(bonds >= after.contacts / 2 && bonds > 0);
-  EXPECT(rvelab_get_array(pool, id, "bonds/tensile_strength_Pa", NULL, 0, &need) == RVELAB_OK && need == 8 * (size_t)bonds);
+  EXPECT(rvelab_get_array(pool, id, "bonds/tensile_strength_Pa", NULL, 0, &need) == RVELAB_OK &&
+         need == 8 * (size_t)bonds);
   EXPECT((strength = malloc(need)) != NULL && (weakened = malloc(need)) != NULL);
-  EXPECT(rvelab_get_array(pool, id, "bonds/tensile_strength_Pa", strength, need, &need) == RVELAB_OK && strength[0] == 1e5);
+  EXPECT(rvelab_get_array(pool, id, "bonds/tensile_strength_Pa", strength, need, &need) == RVELAB_OK &&
+         strength[0] == 1e5);
   EXPECT(rvelab_run_stages(pool, 1, &id, weaker, sigma, NULL) == RVELAB_OK);
   EXPECT(rvelab_get_array(pool, id, "bonds/tensile_strength_Pa", weakened, need, &need) == RVELAB_OK);
   for (k = 0; k < bonds; ++k) EXPECT(weakened[k] == 0.5 * strength[k]);

@@ -186,8 +186,7 @@ typedef struct rvelab_info {
   double sigma[9];
   double contact[9];
   double reynolds[9];
-  double
-      error_estimate;
+  double error_estimate;
 } rvelab_info;
 
 int32_t rvelab_info_init(rvelab_info* info, size_t struct_size);
